@@ -1,0 +1,1 @@
+"""stlspec: a declarative language and compiler toolkit for Signal Temporal Logic."""
