@@ -1,0 +1,314 @@
+"""From the tokens of one statement to its node, or to exactly one diagnostic.
+
+In: a source text. Out: `Syntax`, the statements that parse and a diagnostic for each that does not. Tokens are
+fed to Lark's LALR automaton one by one, which lets three rules stay out of the grammar: a contextual word is a
+name where the automaton does not take the word; an alias such as `G` is an operator only where one may stand
+and an operand follows, and never if the text declares it; a word after a number on its line is a unit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from lark import Lark, Token
+from lark.parsers.lalr_analysis import Shift
+
+from stlspec.errors import Diagnostic, diagnostic
+from stlspec.lang import grammar
+from stlspec.lang.hints import Failure, describe
+from stlspec.lang.nodes import (
+    Call,
+    Expression,
+    Group,
+    Index,
+    Infix,
+    LetStatement,
+    Number,
+    Prefix,
+    RequirementStatement,
+    SignalStatement,
+    Statement,
+    Text,
+    children,
+    post_order,
+)
+from stlspec.lang.statements import STATEMENT_WORDS, cut, first_on_line, is_word
+from stlspec.lang.tree import TreeBuilder, span_of
+from stlspec.lang.units import is_unit_word
+from stlspec.source import SourceText, Span
+
+DEEPEST = 200
+_TALLEST_STACK = 5000
+_PREFIX_RULES = frozenset({"always", "eventually", "historically", "once", "next", "prev"})
+_INFIX_RULES = frozenset({"until", "since", "unless", "release"})
+_OPERAND_STARTS = frozenset({"NAME", "NUMBER", "LPAR", "TRUE", "FALSE", "INF", "MINUS", "NOT", "BANG", "LSQB"})
+_END = "$END"
+
+
+@dataclass(frozen=True, slots=True)
+class Syntax:
+    """What a text says: its good statements, and one diagnostic for each broken one.
+
+    names, requirement_names: what the text declares, broken statements included, so that a use of such a name
+    is not reported a second time.
+    """
+
+    source: SourceText
+    statements: tuple[Statement, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    comments: tuple[Text, ...]
+    names: frozenset[str]
+    requirement_names: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Automaton:
+    """Lark's tables for one start symbol, and the alias words read off the grammar's rules."""
+
+    lark: Lark
+    prefix_aliases: frozenset[str]
+    infix_aliases: frozenset[str]
+    contextual: frozenset[str]
+
+
+@cache
+def _automaton() -> _Automaton:
+    lark = grammar.parser(TreeBuilder())
+    aliases: dict[str, frozenset[str]] = {}
+    words = {t.name: str(t.pattern.value) for t in lark.terminals}
+    for rules in (_PREFIX_RULES, _INFIX_RULES):
+        terminals = {rule.expansion[0].name for rule in lark.rules if rule.origin.name in rules}
+        canonical = {name for name in terminals if words[name] in rules}
+        aliases["prefix" if rules is _PREFIX_RULES else "infix"] = frozenset(terminals - canonical)
+    clause = {"SPEC", "USE", "TIME", "DEPENDS", "ON", "SCALE", "BOUND", "UNIT_WORD", "IN", "FROM"}
+    contextual = frozenset(clause) | aliases["prefix"] | aliases["infix"]
+    return _Automaton(lark, aliases["prefix"], aliases["infix"], contextual)
+
+
+def parse(source: SourceText) -> Syntax:
+    """Parse every statement of `source`; a broken one costs its neighbours nothing."""
+    automaton = _automaton()
+    pieces = cut(source, automaton.lark)
+    statements: list[Statement] = []
+    problems: list[Diagnostic] = []
+    for tokens in pieces.statements:
+        rest = tokens
+        while rest:
+            feed = _Feed(automaton, source, rest, pieces.names)
+            node, problem, used = feed.run("statement")
+            if node is not None:
+                statements.append(node)
+            if problem is not None:
+                problems.append(problem)
+            rest = rest[used:]
+    if not pieces.statements:
+        problems.append(diagnostic("S016", source=source, span=Span(0, 0)))
+    problems += [p for s in statements for p in _repeated(source, s)]
+    return Syntax(
+        source,
+        tuple(statements),
+        tuple(problems),
+        pieces.comments,
+        pieces.names,
+        pieces.requirement_names,
+    )
+
+
+def parse_formula(source: SourceText, names: frozenset[str] = frozenset()) -> tuple[Expression | None, tuple[Diagnostic, ...]]:
+    """Parse a text that is one formula, such as the argument of `stlspec eval`."""
+    automaton = _automaton()
+    tokens = tuple(t for piece in cut(source, automaton.lark).statements for t in piece)
+    if not tokens:
+        return None, (diagnostic("S016", source=source, span=Span(0, 0)),)
+    node, problem, _used = _Feed(automaton, source, tokens, names).run("expression")
+    return node, (problem,) if problem else ()
+
+
+def _repeated(source: SourceText, statement: Statement) -> list[Diagnostic]:
+    if not isinstance(statement, SignalStatement | RequirementStatement):
+        return []
+    return [diagnostic("S020", source=source, span=c.span, clause=c.text) for c in statement.repeated]
+
+
+class _Feed:
+    """One walk of the automaton over the tokens of one statement."""
+
+    def __init__(
+        self, automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str]
+    ) -> None:
+        self.automaton = automaton
+        self.source = source
+        self.tokens = tokens
+        self.names = names | self._arguments()
+        self.brackets: list[Token] = []
+
+    def _arguments(self) -> frozenset[str]:
+        """Return the names between the brackets of a `let`: they are names in its body."""
+        tokens = self.tokens
+        if len(tokens) < 4 or tokens[0].type != "LET" or tokens[2].type != "LPAR":
+            return frozenset()
+        inside = []
+        for token in tokens[3:]:
+            if token.type == "RPAR":
+                break
+            inside.append(str(token))
+        return frozenset(inside)
+
+    def run(self, start: str) -> tuple[Any, Diagnostic | None, int]:
+        """Feed the tokens. Returns: the node or None, the diagnostic or None, how many tokens were used."""
+        self.state = self.automaton.lark.parse_interactive("", start=start).parser_state
+        tokens = self.tokens
+        if start == "statement" and not self._accepts(tokens[0].type):
+            return None, describe(self._failure(0, beginning=True)), len(tokens)
+        i = 0
+        while i < len(tokens):
+            token, width = self._read(i)
+            if i and start == "statement" and first_on_line(tokens, i) and self._ends_before(token):
+                return self._rest_is_new(i)
+            if not self._accepts(token.type):
+                return None, describe(self._failure(i)), len(tokens)
+            self.state.feed_token(token)
+            self._note_bracket(token)
+            if len(self.state.state_stack) > _TALLEST_STACK or len(self.brackets) > DEEPEST:
+                problem = diagnostic("S007", source=self.source, span=span_of(token), deepest=DEEPEST)
+                return None, problem, len(tokens)
+            i += width
+        if not self._accepts(_END):
+            return None, describe(self._failure(len(tokens))), len(tokens)
+        node = self._finish()
+        return node, self._too_deep(node), len(tokens)
+
+    def _rest_is_new(self, i: int) -> tuple[Any, Diagnostic | None, int]:
+        """End the statement before token `i`, which begins a line that the statement cannot take.
+
+        What follows is a piece of its own: parsed if it begins with a statement's word, else one diagnostic.
+        """
+        node = self._finish()
+        problem = self._too_deep(node)
+        if str(self.tokens[i]) in STATEMENT_WORDS:
+            return node, problem, i
+        return node, problem or describe(self._failure(i, beginning=True)), len(self.tokens)
+
+    def _finish(self) -> Any:
+        end = Token.new_borrow_pos(_END, "", self.tokens[-1])
+        return self.state.feed_token(end, True)
+
+    def _ends_before(self, token: Token) -> bool:
+        return not self._accepts(token.type) and self._accepts(_END)
+
+    def _accepts(self, terminal: str) -> bool:
+        """Tell whether the automaton can take `terminal` now, by a walk over state numbers only."""
+        states = self.state.parse_conf.states
+        stack = self.state.state_stack
+        if terminal not in states[stack[-1]]:
+            return False
+        stack = stack[:]
+        end_state = self.state.parse_conf.end_state
+        while True:
+            found = states[stack[-1]].get(terminal)
+            if found is None:
+                return False
+            action, rule = found
+            if action is Shift:
+                return True
+            size = len(rule.expansion)
+            if size:
+                del stack[-size:]
+            stack.append(states[stack[-1]][rule.origin.name][1])
+            if terminal == _END and stack[-1] == end_state:
+                return True
+
+    def _read(self, i: int) -> tuple[Token, int]:
+        """Return token `i` as the automaton is to see it, and how many tokens it stands for."""
+        token = self.tokens[i]
+        row = self.state.parse_conf.states[self.state.state_stack[-1]]
+        if i and self.tokens[i - 1].type == "NUMBER" and "UNIT" in row and self._is_unit(i):
+            return self._unit(i)
+        if token.type in self.automaton.contextual and not self._is_operator(token, i, row):
+            return Token.new_borrow_pos("NAME", str(token), token), 1
+        return token, 1
+
+    def _is_operator(self, token: Token, i: int, row: dict[str, Any]) -> bool:
+        """Tell whether a contextual word stands for the word, not for a name."""
+        if token.type not in row:
+            return False
+        is_prefix = token.type in self.automaton.prefix_aliases
+        if not is_prefix and token.type not in self.automaton.infix_aliases:
+            return True
+        if str(token) in self.names:
+            return False
+        return not is_prefix or self._operand_follows(i)
+
+    def _operand_follows(self, i: int) -> bool:
+        if i + 1 >= len(self.tokens):
+            return False
+        after = self.tokens[i + 1].type
+        automaton = self.automaton
+        return after in _OPERAND_STARTS or after in automaton.contextual or after.lower() in _PREFIX_RULES
+
+    def _is_unit(self, i: int) -> bool:
+        token = self.tokens[i]
+        if token.line != self.tokens[i - 1].line or not is_word(token):
+            return False
+        if token.type in self.automaton.infix_aliases and str(token) not in self.names:
+            return not self._operand_follows(i)
+        return token.type == "NAME" or token.type in self.automaton.contextual
+
+    def _unit(self, i: int) -> tuple[Token, int]:
+        """Merge `m`, `/`, `s`, `**`, `2` into one UNIT where they stand without blanks."""
+        tokens, end = self.tokens, i + 1
+        while end + 1 < len(tokens) and tokens[end].start_pos == tokens[end - 1].end_pos:
+            sign, after = tokens[end], tokens[end + 1]
+            glued = after.start_pos == sign.end_pos
+            if not glued or not (
+                (sign.type == "SLASH" and is_unit_word(str(after)))
+                or (sign.type == "POWER" and after.type == "NUMBER")
+            ):
+                break
+            end += 2
+        token = Token.new_borrow_pos("UNIT", "".join(tokens[i:end]), tokens[i])
+        token.end_pos = tokens[end - 1].end_pos
+        return token, end - i
+
+    def _note_bracket(self, token: Token) -> None:
+        if token.type in ("LPAR", "LSQB"):
+            self.brackets.append(token)
+        elif token.type in ("RPAR", "RSQB") and self.brackets:
+            self.brackets.pop()
+
+    def _failure(self, i: int, *, beginning: bool = False) -> Failure:
+        row = self.state.parse_conf.states[self.state.state_stack[-1]]
+        expected = frozenset(t for t in row if t.isupper() and t != "UNIT" and self._accepts(t))
+        return Failure(self.source, tuple(self.tokens), i, expected, tuple(self.brackets), beginning)
+
+    def _too_deep(self, statement: Any) -> Diagnostic | None:
+        for expression in _expressions(statement):
+            depth: dict[int, int] = {}
+            for node in post_order(expression):
+                below = max((depth[id(child)] for child in children(node)), default=0)
+                depth[id(node)] = below + _nests(node)
+                if depth[id(node)] > DEEPEST:
+                    return diagnostic("S007", source=self.source, span=node.span, deepest=DEEPEST)
+        return None
+
+
+def _nests(node: Expression) -> bool:
+    """Tell whether `node` adds a level: flat chains such as `a and b and c` do not."""
+    match node:
+        case Group() | Prefix() | Call() | Index():
+            return True
+        case Infix(_, operators, _):
+            return operators[0].word in ("implies", "pow")
+    return False
+
+
+def _expressions(statement: Any) -> tuple[Expression, ...]:
+    match statement:
+        case LetStatement():
+            return (statement.body,)
+        case RequirementStatement():
+            return (statement.formula,)
+        case Number() | Group() | Prefix() | Infix() | Call() | Index():
+            return (statement,)
+    return ()

@@ -1,0 +1,84 @@
+"""From text to statements: lexing, and cutting the tokens where a statement begins.
+
+In: a source text. Out: the tokens of each statement, the comments, and the names that the text declares, broken
+statements included. A statement begins at a reserved word first on its line, whatever the brackets around it,
+so that a missing bracket never swallows the next statement; indentation has no meaning.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from lark import Lark, Token
+
+from stlspec.lang.nodes import Text
+from stlspec.lang.tree import span_of
+from stlspec.source import SourceText
+
+STATEMENT_WORDS = ("spec", "use", "time", "signal", "param", "let", "hard", "soft", "expect")
+DECLARING = frozenset({"SIGNAL", "PARAM", "LET"})
+_RESERVED_STARTS = frozenset({"SIGNAL", "PARAM", "LET", "HARD", "SOFT", "EXPECT"})
+TIME_UNITS = ("ns", "us", "ms", "s", "min", "h")
+_WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A text as tokens, one tuple a statement; `names` maps each declared name to its token."""
+
+    statements: tuple[tuple[Token, ...], ...]
+    comments: tuple[Text, ...]
+    names: frozenset[str]
+    requirement_names: frozenset[str]
+
+
+def is_word(token: Token) -> bool:
+    """Tell whether a token is spelled like a name, keyword or not."""
+    return _WORD.match(token) is not None
+
+
+def cut(source: SourceText, lark: Lark) -> Cut:
+    """Lex `source` and cut it into statements."""
+    tokens: list[Token] = []
+    comments: list[Text] = []
+    for token in lark.parse_interactive(source.text, start="lexicon").lexer_thread.lex(None):  # type: ignore[arg-type]
+        if token.type == "COMMENT":
+            comments.append(Text(span_of(token), str(token)))
+        else:
+            tokens.append(token)
+    pieces = tuple(_pieces(tokens))
+    declared = frozenset(str(p[1]) for p in pieces if len(p) > 1 and p[0].type in DECLARING)
+    required = frozenset(str(p[1]) for p in pieces if len(p) > 1 and p[0].type in ("HARD", "SOFT"))
+    return Cut(pieces, tuple(comments), declared, required)
+
+
+def _pieces(tokens: Sequence[Token]) -> Iterator[tuple[Token, ...]]:
+    begin = 0
+    for i in range(1, len(tokens)):
+        if first_on_line(tokens, i) and _begins_statement(tokens, i):
+            yield tuple(tokens[begin:i])
+            begin = i
+    if tokens:
+        yield tuple(tokens[begin:])
+
+
+def first_on_line(tokens: Sequence[Token], i: int) -> bool:
+    """Tell whether the token before token `i` ends on an earlier line."""
+    return i == 0 or (tokens[i - 1].end_line or 0) < (tokens[i].line or 0)
+
+
+def _begins_statement(tokens: Sequence[Token], i: int) -> bool:
+    token = tokens[i]
+    if token.type in _RESERVED_STARTS:
+        return True
+    if i + 1 == len(tokens) or tokens[i + 1].line != token.line:
+        return False
+    after = tokens[i + 1]
+    match token.type:
+        case "TIME":
+            return after.type == "NUMBER" or str(after) in (*TIME_UNITS, "step")
+        case "SPEC":
+            return after.type == "NAME"
+        case "USE":
+            return after.type == "STRING"
+    return False

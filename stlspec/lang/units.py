@@ -1,0 +1,61 @@
+"""Units: the words that the language knows, and what a compound such as `m/s**2` is made of.
+
+In: a unit as text. Out: its dimension as a mapping from word to exponent. Only time units are ever converted;
+other words are compared as they stand, so any word may be declared for a signal.
+"""
+
+import re
+from collections.abc import Mapping
+
+NANOSECONDS = {
+    "ns": 1,
+    "us": 1_000,
+    "ms": 1_000_000,
+    "s": 1_000_000_000,
+    "min": 60_000_000_000,
+    "h": 3_600_000_000_000,
+}
+"""Ticks in one of each time unit."""
+
+STEP = "step"
+KNOWN = frozenset(
+    "m mm cm km um nm inch ft mi rad deg rev g kg t N Nm V mV A mA Ah W kW Wh J kJ Hz kHz MHz rpm K degC Pa kPa "
+    "bar L mol cd lx dB percent px bit byte".split()
+) | {*NANOSECONDS, STEP}
+_PART = re.compile(r"(?P<sign>[*/])?(?P<word>[A-Za-z_%][A-Za-z_0-9%]*|1)(?:\*\*(?P<power>-?[0-9]{1,3}))?")
+
+Dimension = Mapping[str, int]
+
+
+def is_unit_word(word: str) -> bool:
+    """Tell whether `word` is a unit that the language knows by itself."""
+    return word in KNOWN
+
+
+def dimension(unit: str) -> dict[str, int] | None:
+    """Return the exponents of `unit`'s words, `m/s**2` as {m: 1, s: -2}; None if it cannot be read."""
+    exponents: dict[str, int] = {}
+    at = 0
+    unit = unit.strip()
+    while at < len(unit):
+        part = _PART.match(unit, at)
+        if part is None or (part["sign"] is None) != (at == 0):
+            return None
+        power = int(part["power"] or 1)
+        if part["word"] != "1":
+            word = part["word"]
+            exponents[word] = exponents.get(word, 0) + (-power if part["sign"] == "/" else power)
+        at = part.end()
+    return {word: power for word, power in exponents.items() if power}
+
+
+def spell(exponents: Dimension) -> str:
+    """Write a dimension the way a user would: {m: 1, s: -2} as `m/s**2`; none as the empty text."""
+    above = [_power(w, p) for w, p in exponents.items() if p > 0]
+    below = [_power(w, -p) for w, p in exponents.items() if p < 0]
+    text = "*".join(above) or ("1" if below else "")
+    return text + "".join(f"/{part}" for part in below)
+
+
+def _power(word: str, power: int) -> str:
+    return word if power == 1 else f"{word}**{power}"
