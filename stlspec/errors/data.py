@@ -9,8 +9,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="signal '{signal}' is NaN at sample {sample} (time {time})",
         help="repair the recording, or choose what to do: --on-nan hold, --on-nan drop",
-        explanation="Robustness of a sample that is not a number means nothing, and a NaN that is let through "
-        "hides whatever comes after it. The file is refused with the first such sample.",
+        explanation="Robustness of a sample that is not a number means nothing, and a NaN that is let "
+        "through hides whatever comes after it. The file is refused with the first such sample.",
         bad="time,x\n0,1\n1,nan\n",
         good="time,x\n0,1\n1,2\n",
         kind="data",
@@ -22,7 +22,8 @@ CODES: tuple[Code, ...] = (
         message="time does not increase at sample {sample}: {time} comes after {previous}",
         help="sort the rows by time, and keep one row for each time; rows of several recordings need an "
         "'episode' column",
-        explanation="Windows are sets of samples between two times, so time stamps must strictly increase.",
+        explanation="Windows are sets of samples between two times, so time stamps must strictly increase. "
+        "Stamps less than a nanosecond apart count as equal.",
         bad="time,x\n0,1\n2,1\n1,1\n",
         good="time,x\n0,1\n1,1\n2,1\n",
         kind="data",
@@ -45,7 +46,7 @@ CODES: tuple[Code, ...] = (
         message="signal '{signal}' is not in the data",
         help="{help}",
         explanation="Every signal that a requirement uses must be a column of the data, or be computed from "
-        "states by an environment. A signal with `from \"name\"` is read from the column of that name.",
+        'states by an environment. A signal with `from "name"` is read from the column of that name.',
         bad="time,speed\n0,1\n",
         good="time,x\n0,1\n",
         kind="data",
@@ -79,8 +80,8 @@ CODES: tuple[Code, ...] = (
         message="signal '{signal}' is {value} at sample {sample} (time {time}), outside its range "
         "[{low}, {high}]",
         help="widen the range in the declaration of '{signal}', or repair the data",
-        explanation="A declared range is a promise: the online enclosures and the lints rely on it, so a sample "
-        "outside it is refused everywhere.",
+        explanation="A declared range is a promise: the online enclosures and the lints rely on it, so a "
+        "sample outside it is refused everywhere.",
         bad="# signal x in [0, 1]\ntime,x\n0,3\n",
         good="# signal x in [0, 1]\ntime,x\n0,0.5\n",
         kind="shown",
@@ -115,7 +116,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="the spec measures time in {unit}, but the data has no 'time'",
         help="add a 'time' column in {unit}, or declare the sampling period: `time 100 ms`",
-        explanation="With `time s` the stamps come with the data. Without them bounds in seconds mean nothing.",
+        explanation="With `time s` the stamps come with the data. Without them bounds in seconds mean "
+        "nothing.",
         bad="# time s\nx\n1\n2\n",
         good="# time s\ntime,x\n0,1\n0.5,2\n",
         kind="shown",
@@ -136,11 +138,25 @@ CODES: tuple[Code, ...] = (
         "D812",
         "a time stamp that cannot be kept",
         "error",
-        message="time {time} at sample {sample} is not a finite number within 292 years of the first",
+        message="time {time} at sample {sample} is not a finite number within 146 years of the first",
         help="give time stamps relative to the start of the recording",
-        explanation="Time is kept as 64-bit nanoseconds.",
+        explanation="Time is kept as 64-bit nanoseconds, and a window ends at most one length of the trace "
+        "after its sample, so half of what 64 bits hold is left for the trace.",
         bad="time,x\n0,1\ninf,1\n",
         good="time,x\n0,1\n1,1\n",
         kind="data",
+    ),
+    Code(
+        "D813",
+        "data of a wrong shape",
+        "error",
+        message="{what} {problem}",
+        help="give one value for each sample; for a batch (n_traces, n_samples) values, or a list with one "
+        "sequence for each trace",
+        explanation="One trace is one sequence of values for each signal. A batch has one row for each "
+        "trace, and all signals have the same traces. Traces of unequal length come as lists of sequences.",
+        bad='{"signals": {"x": 3}}',
+        good='{"signals": {"x": [3]}}',
+        kind="shown",
     ),
 )

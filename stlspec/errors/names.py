@@ -1,5 +1,92 @@
-"""Codes of this stage."""
+"""N1xx: names that are unknown, clash or are used for what they are not."""
 
 from stlspec.errors.model import Code
 
-CODES: tuple[Code, ...] = ()
+_SAFE = "signal d\nhard safe: always (d > 1)\n"
+
+CODES: tuple[Code, ...] = (
+    Code(
+        "N101",
+        "an unknown name",
+        "error",
+        message="`{name}` is not declared",
+        help="{help}",
+        explanation="Every name in a formula is a declared signal, param or let, or the time `now`.",
+        bad="signal d_obs\nhard safe: always (d_obz > 1)\n",
+        good="signal d_obs\nhard safe: always (d_obs > 1)\n",
+    ),
+    Code(
+        "N102",
+        "a name declared twice",
+        "error",
+        message="`{name}` is declared a second time",
+        help="rename one of the two",
+        explanation="Signals, params, lets and requirements share one space of names.",
+        bad="signal d\n" + _SAFE,
+        good=_SAFE,
+    ),
+    Code(
+        "N103",
+        "an unknown function",
+        "error",
+        message="there is no function `{name}`",
+        help="{help}",
+        explanation="The functions are abs, min, max, sqrt, exp, log, sin, cos, hypot, delta and rate.",
+        bad="signal d\nhard safe: always (abz(d) > 1)\n",
+        good="signal d\nhard safe: always (abs(d) > 1)\n",
+    ),
+    Code(
+        "N104",
+        "a let that leads back to itself",
+        "error",
+        message="`{name}` is defined by itself: {cycle}",
+        help="break the circle; a formula cannot be recursive",
+        explanation="Each `let` stands for the formula on its right, so it cannot use itself, even through others.",
+        bad="signal d\nlet p = q or d > 1\nlet q = p and d < 9\nhard safe: p\n",
+        good="signal d\nlet p = d > 1\nlet q = p and d < 9\nhard safe: q\n",
+    ),
+    Code(
+        "N105",
+        "a requirement inside a formula",
+        "error",
+        message="`{name}` is a requirement, not a formula that can be used here",
+        help="give its formula a name with `let`, and use that name in both places; for an order between "
+        "requirements write `depends on {name}` in the header",
+        explanation="Requirements are demands with a weight. A formula that two of them share is a `let`.",
+        bad=_SAFE + "hard calm: safe and d < 9\n",
+        good="signal d\nlet away = always (d > 1)\nhard safe: away\nsoft calm depends on safe: away and d < 9\n",
+    ),
+    Code(
+        "N106",
+        "a param without a value",
+        "error",
+        message="param `{name}` has no value",
+        help="give it one with `-p {name}=VALUE`, or in the spec: `param {name} = 8`",
+        explanation="All params are bound when a spec is compiled. `check` accepts unbound ones.",
+        bad="# stlspec compile spec.stl -o spec.stlb      where the spec says: param T",
+        good="# stlspec compile spec.stl -o spec.stlb -p T=8",
+        kind="shown",
+    ),
+    Code(
+        "N107",
+        "a value for no param",
+        "error",
+        message="the spec has no param `{name}`",
+        help="{help}",
+        explanation="`-p NAME=VALUE` binds a param that the spec declares.",
+        bad="# stlspec score spec.stl demo.csv -p T_gaol=8      where the spec says: param T_goal",
+        good="# stlspec score spec.stl demo.csv -p T_goal=8",
+        kind="shown",
+    ),
+    Code(
+        "N108",
+        "a value that cannot be bound",
+        "error",
+        message="`{value}` is not a value for param `{name}`: {problem}",
+        help="write a number, with a time unit where the param has one: -p {name}=12 or -p {name}=12s",
+        explanation="A value without a unit is in the param's declared unit; one with a time unit is converted.",
+        bad="# stlspec score spec.stl demo.csv -p T=soon",
+        good="# stlspec score spec.stl demo.csv -p T=12",
+        kind="shown",
+    ),
+)

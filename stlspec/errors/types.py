@@ -1,5 +1,147 @@
-"""Codes of this stage."""
+"""T2xx: real values and formulas in each other's place; U3xx: units."""
 
 from stlspec.errors.model import Code
 
-CODES: tuple[Code, ...] = ()
+_D = "signal d\n"
+
+CODES: tuple[Code, ...] = (
+    Code(
+        "T201",
+        "a formula is needed",
+        "error",
+        message="a formula is needed here, but this is a number",
+        label="not true or false by itself",
+        help="compare it with something, for instance `{text} > 0`",
+        explanation="Operators such as `always` and `and` join statements that are true or false at a sample; a real "
+        "signal becomes one by a comparison.",
+        bad=_D + "hard safe: always d\n",
+        good=_D + "hard safe: always (d > 0)\n",
+    ),
+    Code(
+        "T202",
+        "a number is needed",
+        "error",
+        message="a number is needed here, but this is a formula",
+        label="true or false, not a number",
+        help="{help}",
+        explanation="Arithmetic and comparisons join numbers. Whether a formula holds is no number.",
+        bad=_D + "hard safe: (d > 1) + 2 > 3\n",
+        good=_D + "hard safe: d + 2 > 3\n",
+    ),
+    Code(
+        "T203",
+        "a wrong number of arguments",
+        "error",
+        message="`{name}` takes {wanted}, not {given}",
+        help="write {usage}",
+        explanation="abs, sqrt, exp, log, sin, cos, delta and rate take one argument, hypot takes two, min and max "
+        "take two or more.",
+        bad=_D + "hard safe: always (abs(d, 2) > 1)\n",
+        good=_D + "hard safe: always (abs(d) > 1)\n",
+    ),
+    Code(
+        "T204",
+        "a bound that is not constant",
+        "error",
+        message="{what} must be known before the trace is, but this depends on `{name}`",
+        help="use numbers, params and `inf` only",
+        explanation="Windows and ranges are fixed when the spec is compiled.",
+        bad=_D + "hard safe: always[0, d] (d > 1)\n",
+        good=_D + "hard safe: always[0, 5] (d > 1)\n",
+    ),
+    Code(
+        "T205",
+        "a value that is not allowed",
+        "error",
+        message="{what}",
+        help="{help}",
+        explanation="A scale is a positive number, a bound is one of tanh, linear, none, and a type is real or bool.",
+        bad=_D + "hard safe scale 0: always (d > 1)\n",
+        good=_D + "hard safe scale 2: always (d > 1)\n",
+    ),
+    Code(
+        "T206",
+        "a range without sense",
+        "error",
+        message="{what}",
+        help="{help}",
+        explanation="A range gives the least and the greatest value of a real signal.",
+        bad="signal d in [5, 1]\nhard safe: always (d > 1)\n",
+        good="signal d in [1, 5]\nhard safe: always (d > 1)\n",
+    ),
+    Code(
+        "T207",
+        "a constant without a value",
+        "error",
+        message="this has no value: {text} is not a number",
+        help="keep operands in the range where the function is defined",
+        explanation="An expression of constants only is computed when the spec is compiled.",
+        bad=_D + "hard safe: always (d > sqrt(-1))\n",
+        good=_D + "hard safe: always (d > sqrt(2))\n",
+    ),
+    Code(
+        "U301",
+        "different units",
+        "error",
+        message="{left} and {right} cannot be {joined}",
+        label="{right}",
+        help="{help}",
+        explanation="Comparing or adding values of different units is an error. A literal takes the unit of the "
+        "other side; only time units are converted.",
+        bad='signal x unit "m"\nsignal y unit "kg"\nhard ok: always (x > y)\n',
+        good='signal x unit "m"\nsignal y unit "m"\nhard ok: always (x > y)\n',
+    ),
+    Code(
+        "U302",
+        "an unknown unit",
+        "error",
+        message="`{unit}` is not a unit",
+        help="{help}",
+        explanation="Times carry ns, us, ms, s, min, h or step. Other numbers carry a usual unit, or one that a "
+        "signal of the spec declares.",
+        bad="time s\nsignal d\nhard safe: always[0, 5 sec] (d > 1)\n",
+        good="time s\nsignal d\nhard safe: always[0, 5 s] (d > 1)\n",
+    ),
+    Code(
+        "U303",
+        "a bound without a unit",
+        "error",
+        message="this bound has no unit, but the spec measures time in {unit}",
+        help="{help}",
+        explanation="With a time unit in the `time` statement, bounds carry one too, except 0 and inf, so that "
+        "`always[0, 5]` never means five samples to one reader and five seconds to another.",
+        bad="time s\nsignal d\nhard safe: always[0, 5] (d > 1)\n",
+        good="time s\nsignal d\nhard safe: always[0, 5 s] (d > 1)\n",
+    ),
+    Code(
+        "U304",
+        "a bound in the wrong unit",
+        "error",
+        message="this bound is in {unit}, but {problem}",
+        help="{help}",
+        explanation="With `time step` bounds count samples; with a time unit they are times.",
+        bad="time step\nsignal d\nhard safe: always[0, 5 s] (d > 1)\n",
+        good="time step\nsignal d\nhard safe: always[0, 5] (d > 1)\n",
+    ),
+    Code(
+        "U305",
+        "not a unit of time",
+        "error",
+        message="`{unit}` is not a unit of time",
+        help="write one of {units}",
+        explanation="The `time` statement is `time step`, `time s` or `time 100 ms`.",
+        bad="time metres\n" + _D + "hard safe: always (d > 1)\n",
+        good="time s\n" + _D + "hard safe: always (d > 1)\n",
+    ),
+    Code(
+        "U306",
+        "a unit where none fits",
+        "error",
+        message="{what}",
+        help="{help}",
+        explanation="exp, log, sin, cos and exponents take plain numbers (angles may be in rad); sqrt halves the "
+        "powers of a unit.",
+        bad='signal x unit "m"\nhard ok: always (exp(x) > 1)\n',
+        good='signal x unit "m"\nhard ok: always (exp(x / 1 m) > 1)\n',
+    ),
+)

@@ -22,6 +22,26 @@ KNOWN = frozenset(
     "m mm cm km um nm inch ft mi rad deg rev g kg t N Nm V mV A mA Ah W kW Wh J kJ Hz kHz MHz rpm K degC Pa kPa "
     "bar L mol cd lx dB percent px bit byte".split()
 ) | {*NANOSECONDS, STEP}
+SPELLINGS = {
+    "sec": "s",
+    "secs": "s",
+    "second": "s",
+    "seconds": "s",
+    "msec": "ms",
+    "usec": "us",
+    "minute": "min",
+    "minutes": "min",
+    "mins": "min",
+    "hour": "h",
+    "hours": "h",
+    "hr": "h",
+    "steps": "step",
+    "meter": "m",
+    "meters": "m",
+    "metre": "m",
+    "metres": "m",
+}
+"""What people write for a unit, and the word that the language has for it."""
 _PART = re.compile(r"(?P<sign>[*/])?(?P<word>[A-Za-z_%][A-Za-z_0-9%]*|1)(?:\*\*(?P<power>-?[0-9]{1,3}))?")
 
 Dimension = Mapping[str, int]

@@ -1,0 +1,268 @@
+"""The bundle as a file: one canonical JSON document, the same bytes wherever it is built.
+
+In: `BundleData`. Out: bytes, and back. Reading executes nothing and trusts nothing: size, JSON, version,
+structure and both hashes are checked, and derived parts (weights, horizons) are computed again.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import PurePath
+from types import MappingProxyType
+from typing import Any
+
+from stlspec.compiler.bundle import BundleData, Param, Requirement, Signal, TimeBase
+from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
+from stlspec.compiler.horizon import horizons
+from stlspec.compiler.ir import Node
+from stlspec.compiler.structure import Malformed, Reader, check_nodes, check_requirements
+from stlspec.errors import BundleError, diagnostic
+
+SCHEMA = "stlspec.bundle/1"
+LANGUAGE = 1
+LARGEST = 64 * 2**20
+Json = dict[str, Any]
+
+
+def number(value: float) -> float | str:
+    """Return a number as JSON has it: finite, or the text "inf" or "-inf"."""
+    return value if abs(value) != float("inf") else ("inf" if value > 0 else "-inf")
+
+
+def _optional(value: float | None) -> float | str | None:
+    return None if value is None else number(value)
+
+
+def _canonical(document: Any) -> bytes:
+    text = json.dumps(document, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return text.encode("utf-8")
+
+
+def _sha256(document: Any) -> str:
+    return hashlib.sha256(_canonical(document)).hexdigest()
+
+
+def _node(node: Node) -> Json:
+    entry: Json = {"op": node.op}
+    if node.children:
+        entry["children"] = list(node.children)
+    if node.value is not None:
+        entry["value"] = node.value if isinstance(node.value, str) else number(node.value)
+    if node.interval is not None:
+        entry["interval"] = list(node.interval)
+    return entry
+
+
+def _meaning(bundle: BundleData) -> Json:
+    """Return what decides whether two specs are the same: no text, no file names, no docs."""
+    time = bundle.time
+    return {
+        "time": [time.kind, time.unit, time.ticks_per_unit, time.period],
+        "signals": sorted(
+            [s.name, s.type, s.unit or "", _optional(s.low), _optional(s.high), s.source or ""]
+            for s in bundle.signals
+        ),
+        "params": sorted([p.name, number(p.value), p.unit or ""] for p in bundle.params),
+        "requirements": [
+            [r.name, r.strength, number(r.scale), r.bound, r.root, sorted(r.depends_on)]
+            for r in bundle.requirements
+        ],
+        "nodes": [_node(node) for node in bundle.nodes],
+        "weights": list(bundle.raw_weights),
+    }
+
+
+def meaning_sha256(bundle: BundleData) -> str:
+    """Return the hash that alone decides "the same spec"."""
+    return _sha256(_meaning(bundle))
+
+
+def source_sha256(bundle: BundleData) -> str:
+    """Return the hash of the texts that the bundle was compiled from."""
+    return _sha256(_sources(bundle))
+
+
+def _sources(bundle: BundleData) -> list[Json]:
+    """Return the texts, under names relative to the main file."""
+    return [{"file": PurePath(name).name, "text": text} for name, text in bundle.sources]
+
+
+def dump(bundle: BundleData) -> bytes:
+    """Write a bundle as canonical JSON with a line end."""
+    document = {
+        "schema": SCHEMA,
+        "language": LANGUAGE,
+        "meaning_sha256": meaning_sha256(bundle),
+        "source_sha256": source_sha256(bundle),
+        "name": bundle.name,
+        "title": bundle.title,
+        "time": {
+            "kind": bundle.time.kind,
+            "unit": bundle.time.unit,
+            "ticks_per_unit": bundle.time.ticks_per_unit,
+            "period": bundle.time.period,
+        },
+        "signals": [
+            {
+                "name": s.name,
+                "type": s.type,
+                "unit": s.unit,
+                "low": _optional(s.low),
+                "high": _optional(s.high),
+                "source": s.source,
+                "doc": s.doc,
+            }
+            for s in bundle.signals
+        ],
+        "params": [
+            {"name": p.name, "value": number(p.value), "unit": p.unit, "doc": p.doc} for p in bundle.params
+        ],
+        "requirements": [
+            {
+                "name": r.name,
+                "strength": r.strength,
+                "root": r.root,
+                "depends_on": list(r.depends_on),
+                "scale": number(r.scale),
+                "bound": r.bound,
+                "horizon": r.horizon,
+                "raw_weight": raw,
+                # 15 digits: the last bit of exp differs between C libraries, the bytes must not.
+                "weight": float(f"{weight:.15g}"),
+                "doc": r.doc,
+                "text": r.text,
+            }
+            for r, raw, weight in zip(bundle.requirements, bundle.raw_weights, bundle.weights, strict=True)
+        ],
+        "edges": [list(edge) for edge in bundle.edges],
+        "nodes": [_node(node) for node in bundle.nodes],
+        "names": dict(bundle.names),
+        "sources": _sources(bundle),
+    }
+    return _canonical(document) + b"\n"
+
+
+def load(data: bytes, file: str = "bundle") -> BundleData:
+    """Read a bundle.
+
+    Raises: BundleError: B701 no bundle, B702 another version, B703 changed, B704 not well formed.
+    """
+    document = _document(data, file)
+    for what, known in (("schema", SCHEMA), ("language", LANGUAGE)):
+        if document.get(what) != known:
+            found = repr(document.get(what))[:40]
+            raise BundleError([diagnostic("B702", file=file, what=what, found=found, known=known)])
+    try:
+        bundle = _bundle(Reader(document, "the bundle"))
+    except Malformed as error:
+        raise BundleError([diagnostic("B704", file=file, problem=str(error))]) from None
+    for what, computed in (("meaning_sha256", meaning_sha256), ("source_sha256", source_sha256)):
+        if document.get(what) != computed(bundle):
+            raise BundleError([diagnostic("B703", file=file, what=what)])
+    if json.loads(dump(bundle)) != document:
+        raise BundleError([diagnostic("B703", file=file, what="content")])
+    return bundle
+
+
+def _document(data: bytes, file: str) -> Json:
+    problem = ""
+    document: Any = None
+    if len(data) > LARGEST:
+        problem = f"it has {len(data)} bytes, more than {LARGEST}"
+    else:
+        try:
+            document = json.loads(data.decode("utf-8"))
+        except UnicodeDecodeError:
+            problem = "it is not UTF-8 text"
+        except RecursionError:
+            problem = "it is nested too deep"
+        except ValueError as error:
+            problem = f"it is not JSON ({str(error)[:80]})"
+    if not problem and (not isinstance(document, dict) or "schema" not in document):
+        problem = "it has no `schema`"
+    if problem:
+        raise BundleError([diagnostic("B701", file=file, problem=problem)])
+    return dict(document)
+
+
+def _bundle(top: Reader) -> BundleData:
+    nodes = tuple(_read_node(entry) for entry in top.entries("nodes"))
+    signals = tuple(_read_signal(entry) for entry in top.entries("signals"))
+    check_nodes(nodes, {s.name: s.type for s in signals})
+    time = _read_time(top.entry("time"))
+    ahead = horizons(nodes, time)
+    requirements = tuple(_read_requirement(entry, ahead) for entry in top.entries("requirements"))
+    check_requirements(requirements, nodes)
+    edges = {r.name: r.depends_on for r in requirements}
+    if find_cycle(edges):
+        raise Malformed("its requirements depend on each other in a circle")
+    raw = dependency_weights(list(ancestors(edges).values()))
+    names = top.entry("names")
+    return BundleData(
+        name=top.text("name"),
+        title=top.optional_text("title"),
+        time=time,
+        signals=signals,
+        params=tuple(_read_param(entry) for entry in top.entries("params")),
+        requirements=requirements,
+        nodes=nodes,
+        names=MappingProxyType({name: names.index(name, len(nodes)) for name in names.values}),
+        raw_weights=raw,
+        weights=softmax(raw),
+        sources=tuple((entry.text("file"), entry.text("text")) for entry in top.entries("sources")),
+    )
+
+
+def _read_time(entry: Reader) -> TimeBase:
+    kind = entry.choice("kind", ("step", "period", "stamps"))
+    period = entry.whole("period", 1, 2**62) if entry.values.get("period") is not None else None
+    if (kind == "period") != (period is not None):
+        raise Malformed("its period does not fit its kind of time")
+    return TimeBase(kind, entry.text("unit"), entry.whole("ticks_per_unit", 1, 2**62), period)  # type: ignore[arg-type]
+
+
+def _read_signal(entry: Reader) -> Signal:
+    return Signal(
+        entry.text("name"),
+        entry.choice("type", ("real", "bool")),  # type: ignore[arg-type]
+        entry.optional_text("unit"),
+        entry.optional_number("low"),
+        entry.optional_number("high"),
+        entry.optional_text("source"),
+        entry.optional_text("doc"),
+    )
+
+
+def _read_param(entry: Reader) -> Param:
+    return Param(entry.text("name"), entry.number("value"), entry.optional_text("unit"), entry.optional_text("doc"))
+
+
+def _read_requirement(entry: Reader, ahead: tuple[int | None, ...]) -> Requirement:
+    root = entry.index("root", len(ahead))
+    scale = entry.number("scale")
+    if not 0 < scale < float("inf"):
+        raise Malformed("a scale is not positive")
+    return Requirement(
+        name=entry.text("name"),
+        strength=entry.choice("strength", ("hard", "soft")),  # type: ignore[arg-type]
+        root=root,
+        depends_on=tuple(entry.texts("depends_on")),
+        scale=scale,
+        bound=entry.choice("bound", ("tanh", "linear", "none")),  # type: ignore[arg-type]
+        horizon=ahead[root],
+        doc=entry.optional_text("doc"),
+        text=entry.text("text"),
+    )
+
+
+def _read_node(entry: Reader) -> Node:
+    values: Mapping[str, Any] = entry.values
+    value = values.get("value")
+    interval = None
+    if "interval" in values:
+        low, high = entry.pair("interval")
+        interval = (low, high)
+    children = tuple(entry.wholes("children")) if "children" in values else ()
+    if value is not None and not (isinstance(value, str) and values.get("op") in ("signal", "bool")):
+        value = entry.number("value")
+    return Node(entry.text("op"), children, value, interval)

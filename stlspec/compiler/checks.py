@@ -1,0 +1,302 @@
+"""The checks of a whole spec: declarations, formulas, and the graph of requirements.
+
+In: the syntax and the values of params. Out: the `Model` and every diagnostic, in the order of the text. Each
+root cause is reported once: names that broken statements declare are known, and broken expressions stay silent.
+"""
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from graphlib import CycleError, TopologicalSorter
+
+from stlspec.compiler.bundle import Signal
+from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
+from stlspec.compiler.inference import Inference
+from stlspec.compiler.model import BROKEN, FORMULA, Declared, Model, Typing
+from stlspec.compiler.names import declare
+from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.lang.nodes import (
+    Call,
+    Expression,
+    Index,
+    Infix,
+    Interval,
+    LetStatement,
+    Name,
+    Operator,
+    Prefix,
+    RequirementStatement,
+    SignalStatement,
+    post_order,
+)
+from stlspec.lang.parse import Syntax
+from stlspec.lang.units import dimension
+from stlspec.source import SourceText, Span
+
+_TYPES = ("real", "bool")
+BOUNDINGS = ("tanh", "linear", "none")
+_VANISHING = 1 / 100
+
+
+def check(syntax: Syntax, values: Mapping[str, float] | None = None) -> tuple[Model, tuple[Diagnostic, ...]]:
+    """Check a parsed text.
+
+    Args:    values: params bound from outside, in their declared units; they replace the values of the text.
+    Returns: the model, complete only if no diagnostic is an error; all diagnostics of the text in order.
+    """
+    problems = list(syntax.diagnostics)
+    declared = declare(syntax, problems)
+    silent = (syntax.names | syntax.requirement_names) - declared.places.keys()
+    inference = Inference(syntax.source, declared, silent, problems)
+    bound = _params(inference, values or {})
+    signals = _signals(inference)
+    order = _lets(inference)
+    for requirement in declared.requirements.values():
+        inference.formula(requirement.formula)
+        _clauses(syntax.source, requirement, problems)
+    _graph(syntax, declared, problems)
+    let_typings = {name: inference.scope[name] for name in order}
+    model = Model(
+        syntax.source, declared, signals, bound, order, let_typings, inference.typings, inference.intervals
+    )
+    return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
+
+
+def _params(inference: Inference, values: Mapping[str, float]) -> dict[str, float]:
+    """Put params into scope, bound from outside first; return those with a value."""
+    bound: dict[str, float] = {}
+    for name, statement in inference.declared.params.items():
+        typing = inference.infer(statement.number) if statement.number else Typing("real", None, True)
+        value = values.get(name, typing.value)
+        if value is not None and typing.kind == "real":
+            bound[name] = value
+            typing = Typing("real", typing.unit, True, value)
+        inference.scope[name] = typing
+    return bound
+
+
+def _signals(inference: Inference) -> dict[str, Signal]:
+    """Resolve types, units and ranges of the signals and put them into scope."""
+    found = {}
+    for name, statement in inference.declared.signals.items():
+        unit = _unit_of(inference, statement)
+        if unit is not None:
+            inference.quantities.known |= set(unit)
+        kind = _type_of(inference, statement)
+        inference.scope[name] = Typing("real", unit or {}) if kind == "real" else FORMULA
+        low, high = None, None
+        if statement.range is not None:
+            low, high = _range_of(inference, statement, kind, unit or {})
+        found[name] = Signal(
+            name,
+            "bool" if kind == "bool" else "real",
+            statement.unit.text if statement.unit else None,
+            low,
+            high,
+            statement.source.text if statement.source else None,
+            statement.doc.text if statement.doc else None,
+        )
+    return found
+
+
+def _unit_of(inference: Inference, statement: SignalStatement) -> Mapping[str, int] | None:
+    if statement.unit is None:
+        return None
+    unit = dimension(statement.unit.text)
+    if unit is None:
+        problem = diagnostic(
+            "U302",
+            source=inference.source,
+            span=statement.unit.span,
+            unit=statement.unit.text,
+            help='write it like "m/s" or "m/s**2"',
+        )
+        inference.problems.append(problem)
+    return unit
+
+
+def _type_of(inference: Inference, statement: SignalStatement) -> str:
+    if statement.type is None or statement.type.text in _TYPES:
+        return statement.type.text if statement.type else "real"
+    inference.problems.append(_choice(inference.source, statement.type, "a type", _TYPES))
+    return "real"
+
+
+def _choice(source: SourceText, name: Name, what: str, allowed: tuple[str, ...]) -> Diagnostic:
+    close = get_close_matches(name.text, allowed, 1, 0.5)
+    way = f"did you mean `{close[0]}`?" if close else f"write one of {', '.join(allowed)}"
+    return diagnostic("T205", source=source, span=name.span, what=f"`{name.text}` is not {what}", help=way)
+
+
+def _range_of(
+    inference: Inference, statement: SignalStatement, kind: str, unit: Mapping[str, int]
+) -> tuple[float | None, float | None]:
+    assert statement.range is not None
+    if kind == "bool":
+        problem = diagnostic(
+            "T206",
+            source=inference.source,
+            span=statement.range.span,
+            what="a bool signal has no range",
+            help="remove the range, or the `: bool`",
+        )
+        inference.problems.append(problem)
+        return None, None
+    found = inference.range_of(statement.range, unit)
+    return found if found is not None else (None, None)
+
+
+def _lets(inference: Inference) -> tuple[str, ...]:
+    """Type the lets, each after those that it uses, and put them into scope."""
+    lets = inference.declared.lets
+    uses = {name: [n for n in _names_in(let.body) if n in lets] for name, let in lets.items()}
+    try:
+        order = tuple(TopologicalSorter(uses).static_order())
+    except CycleError as error:
+        circle: list[str] = error.args[1][::-1]
+        _report_circle(inference, circle)
+        order = tuple(lets)
+        inference.scope.update(dict.fromkeys(order, BROKEN))
+    for name in order:
+        let = lets[name]
+        if name in inference.scope:
+            continue
+        inference.scope[name] = _template(inference, let) if let.arguments else inference.infer(let.body)
+    return order
+
+
+def _template(inference: Inference, let: LetStatement) -> Typing:
+    problem = diagnostic(
+        "S015",
+        source=inference.source,
+        span=let.arguments[0].span.to(let.arguments[-1].span),
+        what="a `let` with arguments",
+        help="write the formula out for each use",
+    )
+    inference.problems.append(problem)
+    return BROKEN
+
+
+def _report_circle(inference: Inference, circle: list[str]) -> None:
+    places = inference.declared.places
+    labels = tuple(
+        Label(places[name], f"`{name}` uses `{used}`", inference.source)
+        for name, used in zip(circle[1:], circle[2:], strict=False)
+    )
+    inference.problems.append(
+        diagnostic(
+            "N104",
+            source=inference.source,
+            span=places[circle[0]],
+            labels=labels,
+            name=circle[0],
+            cycle=" -> ".join(circle),
+        )
+    )
+
+
+def _names_in(root: Expression) -> Iterable[str]:
+    """Yield the names that an expression uses, in its intervals too."""
+    pending = [root]
+    while pending:
+        for node in post_order(pending.pop()):
+            operators: tuple[Operator, ...] = ()
+            match node:
+                case Name():
+                    yield node.text
+                case Call():
+                    yield node.function.text
+                case Index():
+                    yield node.name.text
+                case Prefix():
+                    operators = (node.operator,)
+                case Infix():
+                    operators = node.operators
+            intervals: list[Interval] = [o.interval for o in operators if o.interval is not None]
+            pending += [bound for i in intervals for bound in (i.low, i.high)]
+
+
+def _clauses(source: SourceText, requirement: RequirementStatement, problems: list[Diagnostic]) -> None:
+    """Check the scale and the bound of a requirement's header."""
+    scale, bound = requirement.scale, requirement.bound
+    if scale is not None and not 0 < scale.value < float("inf"):
+        what = f"a scale of {scale.value:g} does not scale"
+        problems.append(
+            diagnostic("T205", source=source, span=scale.span, what=what, help="write a positive number")
+        )
+    if bound is not None and bound.text not in BOUNDINGS:
+        problems.append(_choice(source, bound, "a way to bound robustness", BOUNDINGS))
+
+
+def _graph(syntax: Syntax, declared: Declared, problems: list[Diagnostic]) -> None:
+    """Check the edges between requirements: they exist, are acyclic, and hard ones do not wait for soft ones."""
+    requirements = declared.requirements
+    before = len(problems)
+    edges: dict[str, list[str]] = {}
+    for name, requirement in requirements.items():
+        edges[name] = []
+        for on in requirement.depends_on:
+            problem = _edge(syntax, declared, requirement, on)
+            if problem is not None:
+                problems.append(problem)
+            if on.text in requirements and on.text != name:
+                edges[name].append(on.text)
+    circle = find_cycle(edges)
+    if circle is not None:
+        problems.append(_circle(syntax.source, declared, circle))
+        return
+    complete = syntax.requirement_names <= requirements.keys() and len(problems) == before
+    if complete:
+        _weights(syntax.source, declared, edges, problems)
+
+
+def _edge(
+    syntax: Syntax, declared: Declared, requirement: RequirementStatement, on: Name
+) -> Diagnostic | None:
+    source, name = syntax.source, requirement.name.text
+    if on.text == name:
+        return diagnostic("G503", source=source, span=on.span, name=name)
+    other = declared.requirements.get(on.text)
+    if other is None:
+        if on.text in syntax.requirement_names:
+            return None
+        close = get_close_matches(on.text, [n for n in declared.requirements if n != name], 1, 0.6)
+        way = f"did you mean `{close[0]}`?" if close else f"state `hard {on.text}: ...`, or remove it"
+        return diagnostic("G502", source=source, span=on.span, name=name, on=on.text, help=way)
+    if requirement.strength == "hard" and other.strength == "soft":
+        place = Label(other.name.span, "declared soft here", source)
+        return diagnostic("G504", source=source, span=on.span, labels=(place,), name=name, on=on.text)
+    return None
+
+
+def _circle(source: SourceText, declared: Declared, circle: list[str]) -> Diagnostic:
+    def place(name: str, on: str) -> Span:
+        names = declared.requirements[name].depends_on
+        return next(n.span for n in names if n.text == on)
+
+    edges = list(zip(circle, circle[1:], strict=False))
+    labels = tuple(Label(place(a, b), f"`{a}` depends on `{b}`", source) for a, b in edges[1:])
+    first = f"`{edges[0][0]}` depends on `{edges[0][1]}`"
+    return diagnostic(
+        "G501", source=source, span=place(*edges[0]), labels=labels, cycle=" -> ".join(circle), edge=first
+    )
+
+
+def _weights(
+    source: SourceText, declared: Declared, edges: Mapping[str, list[str]], problems: list[Diagnostic]
+) -> None:
+    """Warn of soft requirements that no hard one precedes, and of weights too small to matter."""
+    above = ancestors(edges)
+    names = list(edges)
+    hard = [name for name in names if declared.requirements[name].strength == "hard"]
+    hard_bits = sum(1 << i for i, name in enumerate(names) if name in set(hard))
+    for name in names if hard else []:
+        requirement = declared.requirements[name]
+        if requirement.strength == "soft" and not above[name] & hard_bits:
+            span = requirement.name.span
+            problems.append(diagnostic("G505", source=source, span=span, name=name, hard=hard[0]))
+    weights = softmax(dependency_weights(list(above.values())))
+    small = [n for n, w in zip(names, weights, strict=True) if w < _VANISHING * max(weights)]
+    if small:
+        shown = ", ".join(f"`{n}`" for n in small[:5]) + (f" and {len(small) - 5} more" if small[5:] else "")
+        span = declared.requirements[small[0]].name.span
+        problems.append(diagnostic("G507", source=source, span=span, names=shown))

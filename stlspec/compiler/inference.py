@@ -1,0 +1,320 @@
+"""Reals or formulas, in which unit, known or not: the typing of every expression.
+
+In: expressions and the typings of the names in scope. Out: a `Typing` for each node, and one diagnostic for
+each root cause: what is reported is "broken", and whatever holds it stays silent. Formulas and arithmetic share
+one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always (d > 1)` and `d + 2`.
+"""
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+
+from stlspec.compiler.constants import FOLDABLE, fold
+from stlspec.compiler.intervals import ticks_of
+from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
+from stlspec.compiler.quantities import Quantities
+from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.lang.hints import OPERATOR_WORDS
+from stlspec.lang.nodes import (
+    Call,
+    Expression,
+    Group,
+    Index,
+    Infinity,
+    Infix,
+    Interval,
+    Name,
+    Number,
+    Operator,
+    Prefix,
+    Truth,
+    children,
+    post_order,
+)
+from stlspec.lang.units import SPELLINGS, Dimension, dimension
+from stlspec.source import SourceText, Span
+
+COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
+ARITHMETIC = frozenset({"add", "sub", "mul", "div", "pow"})
+FUNCTIONS = {
+    "abs": (1, 1),
+    "min": (2, None),
+    "max": (2, None),
+    "sqrt": (1, 1),
+    "exp": (1, 1),
+    "log": (1, 1),
+    "sin": (1, 1),
+    "cos": (1, 1),
+    "hypot": (2, 2),
+    "delta": (1, 1),
+    "rate": (1, 1),
+}
+NOW = frozenset({"now", "t"})
+
+
+class Inference:
+    """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
+
+    def __init__(
+        self, source: SourceText, declared: Declared, silent: frozenset[str], problems: list[Diagnostic]
+    ) -> None:
+        self.source = source
+        self.declared = declared
+        self.silent = silent
+        self.problems = problems
+        self.scope: dict[str, Typing] = {}
+        self.typings: dict[int, Typing] = {}
+        self.intervals: dict[int, tuple[int, int | None]] = {}
+        self.quantities = Quantities(self._report)
+
+    def _report(self, code: str, span: Span, labels: tuple[Label, ...] = (), **fields: object) -> Typing:
+        self.problems.append(diagnostic(code, source=self.source, span=span, labels=labels, **fields))
+        return BROKEN
+
+    def infer(self, root: Expression) -> Typing:
+        """Type `root` and everything under it."""
+        for node in post_order(root):
+            self.typings[id(node)] = self._node(node)
+        return self.typings[id(root)]
+
+    def formula(self, root: Expression) -> Typing:
+        """Type `root`, which must be a formula."""
+        return self._need_formula(root) if self.infer(root).kind == "real" else self.typings[id(root)]
+
+    def _node(self, node: Expression) -> Typing:
+        below = [self.typings[id(child)] for child in children(node)]
+        match node:
+            case Number():
+                return self._number(node)
+            case Truth():
+                return FORMULA
+            case Infinity():
+                return Typing("real", None, True, float("inf"))
+            case Name():
+                return self._name(node)
+            case Group():
+                return below[0]
+            case Index():
+                return self._index(node)
+            case Call():
+                return self._call(node, below)
+            case Prefix():
+                return self._prefix(node, below[0])
+            case Infix():
+                return self._infix(node, below)
+
+    def _number(self, node: Number) -> Typing:
+        if abs(node.value) == float("inf"):
+            return self._report("S023", node.span)
+        if node.unit is None:
+            return Typing("real", None, True, node.value)
+        found = dimension(node.unit.text)
+        unknown = [w for w in found or () if w not in self.quantities.known]
+        if found is None or unknown:
+            word = unknown[0] if unknown else ""
+            close = SPELLINGS.get(word) or next(iter(get_close_matches(word, self.quantities.known, 1, 0.6)), "")
+            way = f"did you mean `{close}`?" if close else "declare a signal with this unit, or remove it"
+            return self._report("U302", node.unit.span, unit=node.unit.text, help=way)
+        return Typing("real", found, True, node.value)
+
+    def _name(self, node: Name) -> Typing:
+        name = node.text
+        if name in self.scope:
+            return self.scope[name]
+        if name in self.declared.requirements:
+            place = Label(self.declared.places[name], "declared here", self.source)
+            return self._report("N105", node.span, (place,), name=name)
+        if name in self.silent:
+            return BROKEN
+        if name in NOW:
+            time = self.declared.time
+            return Typing("real", None if time.kind == "step" else {time.unit: 1})
+        return self._report("N101", node.span, name=name, help=self._meant(name, [*self.scope, "now"]))
+
+    @staticmethod
+    def _meant(name: str, candidates: list[str]) -> str:
+        close = get_close_matches(name, candidates, 1, 0.6)
+        if close:
+            return f"did you mean `{close[0]}`?"
+        if name in OPERATOR_WORDS:
+            return f"`{name}` is an operator: it needs an operand"
+        return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`"
+
+    def _index(self, node: Index) -> Typing:
+        inner = self._name(node.name)
+        if isinstance(node.index, Name) and node.index.text in NOW and node.index.text not in self.scope:
+            return inner
+        if inner == BROKEN:
+            return BROKEN
+        text = self.source.slice(node.index.span)
+        way = f"write `{node.name.text}`; for other samples use `next`, `prev`, `delta` or a window"
+        return self._report("S013", node.span, name=node.name.text, index=text, help=way)
+
+    def _call(self, node: Call, below: list[Typing]) -> Typing:
+        name = node.function.text
+        if name not in FUNCTIONS:
+            return self._unknown_function(node)
+        least, most = FUNCTIONS[name]
+        given = len(node.arguments)
+        if given < least or (most is not None and given > most):
+            wanted = f"{least} or more" if most is None else str(least)
+            usage = f"`{name}({', '.join('xyz'[:least])})`"
+            plural = "argument" if wanted == "1" else "arguments"
+            return self._report(
+                "T203", node.span, name=name, wanted=f"{wanted} {plural}", given=given, usage=usage
+            )
+        if not all([self._need_real(a, f"{name}(...)") for a in node.arguments]):
+            return BROKEN
+        unit = self.quantities.of_call(name, list(zip(node.arguments, below, strict=True)), self.declared.time)
+        return self._folded(name, below, unit, node.span) if unit is not BROKEN else BROKEN
+
+    def _unknown_function(self, node: Call) -> Typing:
+        name = node.function.text
+        if name in self.declared.lets or name in self.silent:
+            if name in self.declared.lets and not self.declared.lets[name].arguments:
+                way = f"write `{name}` without arguments"
+                return self._report("N103", node.function.span, name=name, help=way)
+            return BROKEN
+        words = [*FUNCTIONS, *OPERATOR_WORDS]
+        close = get_close_matches(name, words, 1, 0.6)
+        way = f"did you mean `{close[0]}`?" if close else f"the functions are {', '.join(FUNCTIONS)}"
+        return self._report("N103", node.function.span, name=name, help=way)
+
+    def _prefix(self, node: Prefix, below: Typing) -> Typing:
+        if node.operator.word == "neg":
+            if not self._need_real(node.operand, "-"):
+                return BROKEN
+            return self._folded("neg", [below], below.unit, node.span)
+        self._window(node.operator)
+        return self._need_formula(node.operand)
+
+    def _infix(self, node: Infix, below: list[Typing]) -> Typing:
+        word = node.operators[0].word
+        if word in COMPARISONS:
+            return self._comparison(node, below)
+        if word in ARITHMETIC:
+            return self._arithmetic(node, below)
+        for operator in node.operators:
+            self._window(operator)
+        if len(node.operators) > 1 and word in ("until", "since", "unless", "release", "iff"):
+            left = self.source.slice(node.operands[0].span.to(node.operands[1].span))
+            operator = node.operators[1]
+            return self._report("S009", operator.span, operator=operator.word, left=_short(left))
+        kinds = [self._need_formula(operand).kind for operand in node.operands]
+        return FORMULA if "broken" not in kinds else BROKEN
+
+    def _comparison(self, node: Infix, below: list[Typing]) -> Typing:
+        for operator in node.operators:
+            if operator.word == "assign":
+                return self._report("S008", operator.span)
+        words = {operator.word for operator in node.operators}
+        if len(node.operators) > 1 and not (words <= {"lt", "le"} or words <= {"gt", "ge"}):
+            return self._report("S022", node.operators[1].span)
+        sign = self.source.slice(node.operators[0].span)
+        if not all([self._need_real(operand, sign) for operand in node.operands]):
+            return BROKEN
+        pairs = list(zip(node.operands, below, strict=True))
+        for left, right in zip(pairs, pairs[1:], strict=False):
+            if self.quantities.joined([left, right], "compared") is BROKEN:
+                return BROKEN
+        return FORMULA
+
+    def _arithmetic(self, node: Infix, below: list[Typing]) -> Typing:
+        if not all([self._need_real(operand, "arithmetic") for operand in node.operands]):
+            return BROKEN
+        words = [operator.word for operator in node.operators]
+        unit = self.quantities.of_operators(words, list(zip(node.operands, below, strict=True)))
+        if unit is BROKEN:
+            return BROKEN
+        typing = below[0]
+        for word, right in zip(words, below[1:], strict=True):
+            typing = self._folded(word, [typing, right], unit, node.span)
+        return typing
+
+    def _folded(
+        self, op: str, operands: list[Typing], unit: Dimension | None | Typing, span: Span
+    ) -> Typing:
+        """Type the result of real operands: constant if they are, with its value if all values are known."""
+        assert not isinstance(unit, Typing)
+        if not all(t.constant for t in operands) or op not in FOLDABLE:
+            return Typing("real", unit)
+        values = [self.quantities.value_in(t, unit) for t in operands]
+        if any(v is None for v in values):
+            return Typing("real", unit, True)
+        value = fold(op, [v for v in values if v is not None])
+        if value != value:
+            return self._report("T207", span, text=_short(self.source.slice(span)))
+        return Typing("real", unit, True, value)
+
+    def _need_real(self, node: Expression, what: str) -> bool:
+        kind = self.typings[id(node)].kind
+        if kind == "formula":
+            way = (
+                "use `iff` to say that two formulas agree"
+                if what in ("==", "!=")
+                else f"compare or add numbers only; `{what}` takes numbers"
+            )
+            if what in ("=>", "<="):
+                way = "for `implies` write `->`; to compare, both sides are numbers"
+            self._report("T202", node.span, help=way)
+            self.typings[id(node)] = BROKEN
+        return kind == "real"
+
+    def _need_formula(self, node: Expression) -> Typing:
+        typing = self.typings[id(node)]
+        if typing.kind != "real":
+            return typing
+        self._report("T201", node.span, text=_short(self.source.slice(node.span)))
+        self.typings[id(node)] = BROKEN
+        return BROKEN
+
+    def _window(self, operator: Operator) -> None:
+        """Work out the interval of a temporal operator in ticks, if it has one and its params are known."""
+        if operator.interval is None:
+            return
+        interval = operator.interval
+        bounds = [self.constant(bound, "a bound") for bound in (interval.low, interval.high)]
+        if any(bound.kind == "broken" for bound in bounds):
+            return
+        ticks = ticks_of(interval, (bounds[0], bounds[1]), self.declared.time, self.source, self.problems)
+        if ticks is not None:
+            self.intervals[id(interval)] = ticks
+
+    def constant(self, node: Expression, what: str) -> Typing:
+        """Type an expression that must be a real constant; `what` names its role in the message."""
+        typing = self.infer(node)
+        if typing.kind == "broken":
+            return BROKEN
+        if not self._need_real(node, what):
+            return BROKEN
+        if typing.constant:
+            return typing
+        culprit = next(
+            n for n in post_order(node) if not children(n) and not self.typings[id(n)].constant
+        )
+        return self._report("T204", node.span, what=what, name=self.source.slice(culprit.span))
+
+    def range_of(self, interval: Interval, unit: Mapping[str, int]) -> tuple[float, float] | None:
+        """Return the bounds of a signal's range in the signal's unit; None if reported or not known."""
+        values = []
+        for bound in (interval.low, interval.high):
+            typing = self.constant(bound, "a range")
+            value = self.quantities.value_in(typing, unit) if typing.kind == "real" else None
+            if value is None:
+                return None
+            values.append(value)
+        low, high = values
+        if not low < high:
+            self._report(
+                "T206",
+                interval.span,
+                what="the range ends before it begins" if low > high else "the range holds one value only",
+                help=f"write [{high:g}, {low:g}]" if low > high else "a signal that never changes is a `param`",
+            )
+            return None
+        return low, high
+
+
+def _short(text: str) -> str:
+    """Cut a piece of source to what fits into a message."""
+    flat = " ".join(text.split())
+    return flat if len(flat) <= 30 else flat[:29] + "…"

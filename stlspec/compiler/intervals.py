@@ -1,0 +1,129 @@
+"""Bounds of temporal operators, from constants with units to whole ticks.
+
+In: an interval, the typings of its bounds, the time base. Out: (low, high) in ticks, high None for no end, or a
+diagnostic. Bounds are rounded to the nearest tick once, here; all window arithmetic after this is on integers.
+"""
+
+import math
+
+from stlspec.compiler.bundle import TimeBase
+from stlspec.compiler.model import Typing
+from stlspec.errors import Diagnostic, diagnostic
+from stlspec.lang.nodes import Interval
+from stlspec.lang.units import NANOSECONDS, STEP, spell
+from stlspec.source import SourceText, Span
+
+_LARGEST = 2**62
+Ticks = tuple[int, int | None]
+
+
+def ticks_of(
+    interval: Interval,
+    bounds: tuple[Typing, Typing],
+    time: TimeBase,
+    source: SourceText,
+    problems: list[Diagnostic],
+) -> Ticks | None:
+    """Return the interval in ticks; None if a param is not bound yet or something was reported."""
+    before = len(problems)
+
+    def report(code: str, span: Span, **fields: object) -> None:
+        problems.append(diagnostic(code, source=source, span=span, **fields))
+
+    for node, bound in zip((interval.low, interval.high), bounds, strict=True):
+        _check_unit(bound, node.span, source.slice(node.span), time, report)
+    if len(problems) > before or any(bound.value is None for bound in bounds):
+        return None
+    low, high = (_in_ticks(bound, time) for bound in bounds)
+    texts = [source.slice(node.span) for node in (interval.low, interval.high)]
+    spans = [interval.low.span, interval.high.span]
+    _check_order(low, high, interval.span, texts, spans, report)
+    if len(problems) > before:
+        return None
+    return _rounded(low, high, interval, texts, time, report)
+
+
+def _in_ticks(bound: Typing, time: TimeBase) -> float:
+    assert bound.value is not None
+    word = next(iter(bound.unit)) if bound.unit else None
+    return bound.value * (NANOSECONDS[word] if word in NANOSECONDS and time.kind != "step" else 1)
+
+
+def _check_unit(bound: Typing, span: Span, text: str, time: TimeBase, report) -> None:  # type: ignore[no-untyped-def]
+    """Refuse a bound in the wrong unit, or one without a unit where the spec has one."""
+    if bound.unit is None:
+        if time.kind == "step" or bound.value is None or bound.value in (0, math.inf):
+            return
+        simple = text.replace(".", "", 1).isdigit()
+        way = f"write `{text} {time.unit}`" if simple else f"give the numbers and params in it a unit, such as {time.unit}"
+        report("U303", span, unit=time.unit, help=way)
+        return
+    shown = f"`{spell(bound.unit)}`" if bound.unit else "a plain number"
+    word = next(iter(bound.unit)) if len(bound.unit) == 1 else ""
+    if time.kind == "step" and bound.unit != {STEP: 1}:
+        declare = f" or declare `time {word}`" if word in NANOSECONDS else ""
+        report(
+            "U304",
+            span,
+            unit=shown,
+            problem="the spec counts samples (`time step`)",
+            help=f"write a number of samples{declare}",
+        )
+    elif time.kind != "step" and (word not in NANOSECONDS or bound.unit[word] != 1):
+        report(
+            "U304",
+            span,
+            unit=shown,
+            problem=f"the spec measures time in {time.unit}",
+            help=f"write a time, such as `5 {time.unit}`",
+        )
+
+
+def _check_order(low: float, high: float, span: Span, texts: list[str], spans: list[Span], report) -> None:  # type: ignore[no-untyped-def]
+    for value, text, place in zip((low, high), texts, spans, strict=True):
+        if value < 0:
+            way = "to look back, use `historically`, `once` or `since` with bounds from 0"
+            report("I402", place, value=text, help=way)
+            return
+        if _LARGEST < value < math.inf:
+            report("I405", place, value=text)
+            return
+    if low == math.inf:
+        report("I404", span, problem="it begins at infinity", help="write [0, inf]")
+    elif low > high:
+        report("I401", span, low=texts[0], high=texts[1])
+
+
+def _rounded(low: float, high: float, interval: Interval, texts: list[str], time: TimeBase, report) -> Ticks | None:  # type: ignore[no-untyped-def]
+    """Round to ticks; with a period, say which samples a bound between two of them covers."""
+    if time.kind == "step":
+        ticks = (math.ceil(low), None if high == math.inf else math.floor(high))
+        exact = low == ticks[0] and (ticks[1] is None or high == ticks[1])
+    else:
+        ticks = (round(low), None if high == math.inf else round(high))
+        exact = time.period is None or all(t is None or t % time.period == 0 for t in ticks)
+    if exact:
+        return ticks
+    period = time.period or 1
+    first = -(-ticks[0] // period)
+    last = None if ticks[1] is None else ticks[1] // period
+    if last is not None and first > last:
+        report("I404", interval.span, problem="it lies between two samples", help="widen it to hold a sample")
+        return None
+    covers = f"samples {first} to {last}" if last is not None else f"samples from {first} on"
+    off = 0 if (low != ticks[0] or ticks[0] % period) else 1
+    report("I403", interval.span, value=texts[off], covers=covers, suggestion=_written(first, last, time))
+    return ticks
+
+
+def _written(first: int, last: int | None, time: TimeBase) -> str:
+    if time.kind == "step":
+        return f"[{first}, {'inf' if last is None else last}]"
+    parts = []
+    for sample in (first, last):
+        if sample is None:
+            parts.append("inf")
+        else:
+            value = sample * (time.period or 1) / time.ticks_per_unit
+            parts.append(f"{value:g} {time.unit}" if sample else "0")
+    return f"[{', '.join(parts)}]"

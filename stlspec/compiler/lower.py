@@ -1,0 +1,238 @@
+"""From the checked model to the bundle: formulas become nodes of the DAG, derived operators their definitions.
+
+In: a `Model` without errors whose params are bound. Out: `BundleData`. Lets are lowered once each, in order,
+and every expression bottom-up, so that neither a deep formula nor a chain of a thousand lets needs a deep stack.
+"""
+
+from collections.abc import Sequence
+from types import MappingProxyType
+
+from stlspec.compiler.bundle import BundleData, Bounding, Param, Requirement, Strength
+from stlspec.compiler.constants import FOLDABLE, fold
+from stlspec.compiler.dependencies import ancestors, dependency_weights, softmax
+from stlspec.compiler.horizon import horizons
+from stlspec.compiler.inference import NOW
+from stlspec.compiler.ir import Builder, Interval, reachable
+from stlspec.compiler.model import Model
+from stlspec.compiler.quantities import conversion
+from stlspec.lang.nodes import (
+    Call,
+    Expression,
+    Group,
+    Index,
+    Infinity,
+    Infix,
+    Name,
+    Number,
+    Operator,
+    Prefix,
+    RequirementStatement,
+    Truth,
+    children,
+    post_order,
+)
+from stlspec.lang.units import Dimension
+
+_UNBOUNDED: Interval = (0, None)
+_COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
+_SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
+
+
+def lower(model: Model) -> BundleData:
+    """Make the bundle of a checked model."""
+    lowering = _Lowering(model)
+    lets = {name: lowering.expression(model.declared.lets[name].body) for name in model.let_order}
+    statements = list(model.declared.requirements.values())
+    roots = [lowering.expression(statement.formula) for statement in statements]
+    nodes, index = reachable(lowering.builder.nodes, roots)
+    ahead = horizons(nodes, model.declared.time)
+    requirements = tuple(
+        _requirement(model, statement, index[root], ahead[index[root]])
+        for statement, root in zip(statements, roots, strict=True)
+    )
+    edges = {r.name: r.depends_on for r in requirements}
+    raw = dependency_weights(list(ancestors(edges).values()))
+    return BundleData(
+        name=model.declared.spec_name,
+        title=model.declared.title,
+        time=model.declared.time,
+        signals=tuple(model.signals.values()),
+        params=_params(model),
+        requirements=requirements,
+        nodes=nodes,
+        names=MappingProxyType({name: index[root] for name, root in lets.items() if root in index}),
+        raw_weights=raw,
+        weights=softmax(raw),
+        sources=((model.source.name, model.source.text),),
+    )
+
+
+def _params(model: Model) -> tuple[Param, ...]:
+    return tuple(
+        Param(
+            name,
+            model.values[name],
+            p.number.unit.text if p.number and p.number.unit else None,
+            p.doc.text if p.doc else None,
+        )
+        for name, p in model.declared.params.items()
+    )
+
+
+def _requirement(
+    model: Model, statement: RequirementStatement, root: int, horizon: int | None
+) -> Requirement:
+    strength: Strength = "hard" if statement.strength == "hard" else "soft"
+    bounds: dict[str, Bounding] = {"linear": "linear", "none": "none"}
+    return Requirement(
+        name=statement.name.text,
+        strength=strength,
+        root=root,
+        depends_on=tuple(dict.fromkeys(n.text for n in statement.depends_on)),
+        scale=statement.scale.value if statement.scale else 1.0,
+        bound=bounds.get(statement.bound.text, "tanh") if statement.bound else "tanh",
+        horizon=horizon,
+        doc=statement.doc.text if statement.doc else None,
+        text=_one_line(model.source.slice(statement.formula.span)),
+    )
+
+
+def _one_line(text: str) -> str:
+    """Put a formula on one line, its comments left out."""
+    lines = (line.split("#")[0].split("//")[0] for line in text.split("\n"))
+    return " ".join(" ".join(lines).split())
+
+
+class _Lowering:
+    """Makes nodes of the DAG from expressions; `made` remembers the node of each expression."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.builder = Builder()
+        self.lets: dict[str, int] = {}
+        self.made: dict[int, int] = {}
+
+    def expression(self, root: Expression) -> int:
+        """Lower `root`; a let's name is known from then on by `name_let`."""
+        for node in post_order(root):
+            self.made[id(node)] = self._node(node, [self.made[id(child)] for child in children(node)])
+        return self.made[id(root)]
+
+    def _node(self, node: Expression, below: list[int]) -> int:
+        match node:
+            case Number():
+                return self._constant(node.value)
+            case Infinity():
+                return self._constant(float("inf"))
+            case Truth():
+                return self.builder.add("true" if node.value else "false")
+            case Name():
+                return self._name(node.text)
+            case Index():
+                return self._name(node.name.text)
+            case Group():
+                return below[0]
+            case Call():
+                return self._call(node, below)
+            case Prefix():
+                return self._prefix(node.operator, below[0])
+            case Infix():
+                return self._infix(node, below)
+
+    def _constant(self, value: float) -> int:
+        return self.builder.add("const", value=value)
+
+    def _name(self, name: str) -> int:
+        declared = self.model.declared
+        if name in self.model.values:
+            return self._constant(self.model.values[name])
+        if name in declared.lets:
+            return self.made[id(declared.lets[name].body)]
+        signal = self.model.signals.get(name)
+        if signal is None:
+            assert name in NOW
+            return self.builder.add("now")
+        return self.builder.add("bool" if signal.type == "bool" else "signal", value=name)
+
+    def _real(self, op: str, operands: Sequence[int]) -> int:
+        """Add a real operator, or the constant that it comes to."""
+        values = [self.builder.nodes[i].value for i in operands if self.builder.nodes[i].op == "const"]
+        if len(values) == len(operands) and op in FOLDABLE:
+            return self._constant(fold(op, [float(v) for v in values if v is not None]))
+        return self.builder.add(op, operands)
+
+    def _converted(self, expressions: Sequence[Expression], made: Sequence[int]) -> list[int]:
+        """Bring operands that are joined to the unit of the first one that has a unit."""
+        units = [self.model.typing(e).unit for e in expressions]
+        target: Dimension | None = next((u for u in units if u is not None), None)
+        factors = [conversion(unit, target) or 1.0 for unit in units]
+        return [
+            i if factor == 1.0 else self._real("mul", [i, self._constant(factor)])
+            for i, factor in zip(made, factors, strict=True)
+        ]
+
+    def _call(self, node: Call, below: list[int]) -> int:
+        name = node.function.text
+        if name in _SAME_UNIT:
+            below = self._converted(node.arguments, below)
+        return self._real(name, below)
+
+    def _interval(self, operator: Operator) -> Interval:
+        return self.model.intervals[id(operator.interval)] if operator.interval is not None else _UNBOUNDED
+
+    def _not(self, operand: int) -> int:
+        below = self.builder.nodes[operand]
+        return below.children[0] if below.op == "not" else self.builder.add("not", [operand])
+
+    def _prefix(self, operator: Operator, operand: int) -> int:
+        match operator.word:
+            case "neg":
+                return self._real("neg", [operand])
+            case "not":
+                return self._not(operand)
+            case "next" | "prev":
+                return self.builder.add(operator.word, [operand])
+            case "wnext" | "wprev":
+                return self._not(self.builder.add(operator.word[1:], [self._not(operand)]))
+        return self.builder.add(operator.word, [operand], interval=self._interval(operator))
+
+    def _infix(self, node: Infix, below: list[int]) -> int:
+        word = node.operators[0].word
+        if word in _COMPARISONS:
+            return self._comparison(node, below)
+        if word in ("and", "or"):
+            return self.builder.add(word, below)
+        if word in _SAME_UNIT:
+            below = self._converted(node.operands, below)
+        result = below[0]
+        for operator, right in zip(node.operators, below[1:], strict=True):
+            result = self._joined(operator, result, right)
+        return result
+
+    def _comparison(self, node: Infix, below: list[int]) -> int:
+        below = self._converted(node.operands, below)
+        parts = [
+            self.builder.add(operator.word, [left, right])
+            for operator, left, right in zip(node.operators, below, below[1:], strict=False)
+        ]
+        return parts[0] if len(parts) == 1 else self.builder.add("and", parts)
+
+    def _joined(self, operator: Operator, left: int, right: int) -> int:
+        """Join two operands by one operator, derived ones after their definition (see `ir`)."""
+        add, word = self.builder.add, operator.word
+        match word:
+            case "implies":
+                return add("or", [self._not(left), right])
+            case "iff" | "xor":
+                same = add("and", [add("or", [self._not(left), right]), add("or", [self._not(right), left])])
+                return same if word == "iff" else self._not(same)
+            case "until" | "since":
+                return add(word, [left, right], interval=self._interval(operator))
+            case "release":
+                interval = self._interval(operator)
+                return self._not(add("until", [self._not(left), self._not(right)], interval=interval))
+            case "unless":
+                low, high = self._interval(operator)
+                until = add("until", [left, right], interval=(low, high))
+                return add("or", [until, add("always", [left], interval=(0, high))])
+        return self._real(word, [left, right])

@@ -1,0 +1,123 @@
+"""What a text declares: one table a kind of name, and the statements that may stand only once.
+
+In: syntax. Out: `Declared` and a diagnostic for each name declared twice or statement out of place. Signals,
+params, lets and requirements share one space of names, since formulas and `depends on` would confuse them.
+"""
+
+from collections.abc import Sequence
+
+from stlspec.compiler.bundle import TimeBase
+from stlspec.compiler.model import Declared
+from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.lang.nodes import (
+    LetStatement,
+    ParamStatement,
+    RequirementStatement,
+    SignalStatement,
+    SpecStatement,
+    TimeStatement,
+    UnsupportedStatement,
+)
+from stlspec.lang.parse import Syntax
+from stlspec.lang.statements import TIME_UNITS
+from stlspec.lang.units import NANOSECONDS, STEP
+from stlspec.source import Span
+
+_UNSUPPORTED = {
+    "use": ("`use`", "copy the declarations into this file"),
+    "expect": ("`expect`", "put it behind a `#`, and run `stlspec score` on the file instead"),
+}
+
+
+def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
+    """Collect the declarations of `syntax`; what is wrong with them is added to `problems`."""
+    tables: dict[type, dict[str, object]] = {
+        kind: {} for kind in (SignalStatement, ParamStatement, LetStatement, RequirementStatement)
+    }
+    places: dict[str, Span] = {}
+    for statement in syntax.statements:
+        if isinstance(statement, UnsupportedStatement):
+            what, way = _UNSUPPORTED[statement.word]
+            problems.append(diagnostic("S015", source=syntax.source, span=statement.span, what=what, help=way))
+        if not isinstance(statement, SignalStatement | ParamStatement | LetStatement | RequirementStatement):
+            continue
+        name = statement.name
+        if name.text in places:
+            first = Label(places[name.text], "first declared here", syntax.source)
+            problems.append(
+                diagnostic("N102", source=syntax.source, span=name.span, labels=(first,), name=name.text)
+            )
+            continue
+        places[name.text] = name.span
+        tables[type(statement)][name.text] = statement
+    spec = _header(syntax, problems)
+    return Declared(
+        spec_name=spec.name.text if spec else "",
+        title=spec.title.text if spec and spec.title else None,
+        time=_time(syntax, problems),
+        signals=tables[SignalStatement],  # type: ignore[arg-type]
+        params=tables[ParamStatement],  # type: ignore[arg-type]
+        lets=tables[LetStatement],  # type: ignore[arg-type]
+        requirements=tables[RequirementStatement],  # type: ignore[arg-type]
+        places=places,
+    )
+
+
+def _header(syntax: Syntax, problems: list[Diagnostic]) -> SpecStatement | None:
+    found = [s for s in syntax.statements if isinstance(s, SpecStatement)]
+    for i, statement in enumerate(syntax.statements):
+        if isinstance(statement, SpecStatement) and i:
+            once = statement is not found[0]
+            problems.append(
+                diagnostic(
+                    "S014",
+                    source=syntax.source,
+                    span=statement.span,
+                    word="spec",
+                    problem="is given twice" if once else "stands after other statements",
+                    help="keep one of the two" if once else "move it to the top of the file",
+                )
+            )
+    return found[0] if found else None
+
+
+def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase:
+    found = [s for s in syntax.statements if isinstance(s, TimeStatement)]
+    for extra in found[1:]:
+        problems.append(
+            diagnostic(
+                "S014",
+                source=syntax.source,
+                span=extra.span,
+                word="time",
+                problem="is given twice",
+                help="keep one of the two",
+            )
+        )
+    if not found:
+        return TimeBase("step", STEP, 1)
+    return _time_base(syntax, found[0], problems)
+
+
+def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnostic]) -> TimeBase:
+    """Return the time base of a `time` statement; a wrong one is reported and counts as `time step`."""
+    unit, number = statement.unit.text, statement.number
+    step = TimeBase("step", STEP, 1)
+    if unit == STEP and number in (None, 1.0):
+        return step
+    if unit not in NANOSECONDS:
+        allowed: Sequence[str] = (STEP, *TIME_UNITS) if number is None else TIME_UNITS
+        problems.append(
+            diagnostic(
+                "U305", source=syntax.source, span=statement.unit.span, unit=unit, units=", ".join(allowed)
+            )
+        )
+        return step
+    ticks = NANOSECONDS[unit]
+    if number is None:
+        return TimeBase("stamps", unit, ticks)
+    period = round(number * ticks) if number * ticks < 2**62 else 0
+    if period < 1:
+        problems.append(diagnostic("I406", source=syntax.source, span=statement.span))
+        return step
+    return TimeBase("period", unit, ticks, period)

@@ -1,0 +1,130 @@
+"""Units of real expressions: which may be joined, and what their product is measured in.
+
+In: operators with their operands' typings. Out: the unit of the result, or BROKEN after a diagnostic. A unit of
+None (a literal, a param without a unit) takes the unit of the other side; times alone are converted.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from stlspec.compiler.bundle import TimeBase
+from stlspec.compiler.model import BROKEN, Typing
+from stlspec.lang.nodes import Expression, Number, Prefix
+from stlspec.lang.units import KNOWN, NANOSECONDS, Dimension, spell
+
+Operand = tuple[Expression, Typing]
+Unit = Dimension | None | Typing
+"""A dimension, None for "any", or BROKEN."""
+
+
+def conversion(unit: Dimension | None, to: Dimension | None) -> float | None:
+    """Return the factor from `unit` to `to`: 1 if equal or open, a ratio between times, None if there is none."""
+    if unit is None or to is None or unit == to:
+        return 1.0
+    one, other = _time_word(unit), _time_word(to)
+    if one is None or other is None:
+        return None
+    return NANOSECONDS[one] / NANOSECONDS[other]
+
+
+def _time_word(unit: Dimension) -> str | None:
+    """Return the word of a plain time unit such as `ms`; None for any other."""
+    if len(unit) != 1:
+        return None
+    word, power = next(iter(unit.items()))
+    return word if power == 1 and word in NANOSECONDS else None
+
+
+def _shown(unit: Dimension | None) -> str:
+    return f"`{spell(unit)}`" if unit else "a plain number"
+
+
+class Quantities:
+    """The rules of units; `report(code, span, **fields)` receives what is wrong."""
+
+    def __init__(self, report: Callable[..., Typing]) -> None:
+        self._report = report
+        self.known: set[str] = set(KNOWN)
+
+    def value_in(self, typing: Typing, unit: Dimension | None | Typing) -> float | None:
+        """Return a constant's value in `unit`; None if it is not known."""
+        if typing.value is None or isinstance(unit, Typing):
+            return None
+        factor = conversion(typing.unit, unit)
+        return typing.value if factor in (None, 1.0) else typing.value * (factor or 1.0)
+
+    def joined(self, operands: Sequence[Operand], verb: str) -> Unit:
+        """Return the common unit of operands that are added or compared."""
+        unit: Dimension | None = None
+        first: Expression | None = None
+        for node, typing in operands:
+            if typing.unit is None:
+                continue
+            if unit is None:
+                unit, first = typing.unit, node
+            elif conversion(typing.unit, unit) is None:
+                assert first is not None
+                missing = not unit or not typing.unit
+                way = "declare the unit of both sides" if missing else "convert one side by a factor with a unit"
+                return self._report(
+                    "U301", node.span, left=_shown(unit), right=_shown(typing.unit), joined=verb, help=way
+                )
+        return unit
+
+    def of_operators(self, words: Sequence[str], operands: Sequence[Operand]) -> Unit:
+        """Return the unit of a sum, a product or a power."""
+        if words[0] in ("add", "sub"):
+            return self.joined(operands, "added")
+        if words[0] == "pow":
+            return self._power(operands[0], operands[1])
+        if all(typing.unit is None for _, typing in operands):
+            return None
+        unit: dict[str, int] = dict(operands[0][1].unit or {})
+        for word, (_, typing) in zip(words, operands[1:], strict=True):
+            for part, power in (typing.unit or {}).items():
+                unit[part] = unit.get(part, 0) + (power if word == "mul" else -power)
+        return {part: power for part, power in unit.items() if power}
+
+    def _power(self, base: Operand, exponent: Operand) -> Unit:
+        if exponent[1].unit:
+            return self._plain(exponent, "an exponent")
+        if not base[1].unit:
+            return base[1].unit
+        node = exponent[0].operand if isinstance(exponent[0], Prefix) else exponent[0]
+        value = exponent[1].value
+        if not isinstance(node, Number) or value is None or value != int(value):
+            what = f"a value in {_shown(base[1].unit)} needs a whole number as exponent"
+            way = "write the exponent as a whole number, or divide the base by its unit"
+            return self._report("U306", exponent[0].span, what=what, help=way)
+        return {part: power * int(value) for part, power in base[1].unit.items() if value}
+
+    def _plain(self, operand: Operand, what: str) -> Typing:
+        node, typing = operand
+        return self._report(
+            "U306",
+            node.span,
+            what=f"{what} is a plain number, but this is in {_shown(typing.unit)}",
+            help="divide by the unit first, as in `x / 1 m`",
+        )
+
+    def of_call(self, name: str, arguments: Sequence[Operand], time: TimeBase) -> Unit:
+        """Return the unit of a function of `arguments`."""
+        unit = arguments[0][1].unit
+        if name in ("min", "max", "hypot"):
+            return self.joined(arguments, "compared" if name != "hypot" else "added")
+        if name == "rate" and unit is not None and time.kind != "step":
+            return self.of_operators(["div"], [arguments[0], (arguments[0][0], Typing("real", {time.unit: 1}))])
+        if name in ("exp", "log", "sin", "cos"):
+            angle = unit in ({"rad": 1},) and name in ("sin", "cos")
+            return self._plain(arguments[0], f"the argument of `{name}`") if unit and not angle else None
+        if name == "sqrt" and unit:
+            return self._root(arguments[0], unit)
+        return unit
+
+    def _root(self, operand: Operand, unit: Mapping[str, int]) -> Unit:
+        if any(power % 2 for power in unit.values()):
+            what = f"the square root of a value in {_shown(unit)} has no unit"
+            return self._report("U306", operand[0].span, what=what, help="divide by the unit first")
+        return {part: power // 2 for part, power in unit.items()}
+
+
+__all__ = ["BROKEN", "Quantities", "Unit", "conversion"]

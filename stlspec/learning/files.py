@@ -1,0 +1,131 @@
+"""The output directory of a run: written in one step, resumed after an interruption.
+
+In: the texts and pictures of a finished run, or the state of an unfinished one. Out: files. While a run lasts
+everything is in the sibling directory OUT.partial (`checkpoint.json`); the results are written to
+OUT.partial/run, and renaming that directory is the only step that changes OUT, so nobody ever sees half a run.
+"""
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from stlspec.errors import UsageError, diagnostic
+
+RESULT = "result.json"
+RESULT_SCHEMA = "stlspec.learn/1"
+CHECKPOINT_SCHEMA = "stlspec.checkpoint/1"
+_LARGEST_RESULT = 64 * 2**20
+_LARGEST_CHECKPOINT = 2**30
+
+
+def dumps(document: Any, *, indent: int | None = None) -> str:
+    """Return JSON text; a number that is not finite must have been replaced by a string before."""
+    return json.dumps(document, allow_nan=False, ensure_ascii=False, indent=indent)
+
+
+def claim(out: str | Path) -> Path:
+    """Make sure, before any work, that the directory of a run may be written.
+
+    Args:    out: the directory as the user gave it.
+    Returns: its absolute path; links are followed.
+    Raises:  UsageError D872: it exists and is neither empty nor an earlier run, or cannot be written.
+    """
+    path = Path(os.path.realpath(out))
+    partial = partial_directory(path)
+    try:
+        if (partial / "old").is_dir() and not path.exists():
+            # a run was killed between its last two renames: what was there before comes back
+            (partial / "old").rename(path)
+        if path.is_dir():
+            if any(path.iterdir()) and not _is_run(path):
+                raise _refused(out, "is not empty and holds no earlier run of `stlspec learn`")
+        elif path.exists():
+            raise _refused(out, "exists and is not a directory")
+        if partial.exists() and not partial.is_dir():
+            raise _refused(f"{out}.partial", "is where an unfinished run is kept, and is not a directory")
+        partial.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _refused(out, f"cannot be written: {error.strerror or error}") from None
+    return path
+
+
+def partial_directory(path: Path) -> Path:
+    """Return the directory that keeps an unfinished run of `path`."""
+    return path.with_name(path.name + ".partial")
+
+
+def _is_run(path: Path) -> bool:
+    result = path / RESULT
+    try:
+        if result.stat().st_size > _LARGEST_RESULT:
+            return False
+        document = json.loads(result.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(document, dict) and document.get("schema") == RESULT_SCHEMA
+
+
+def _refused(path: str | Path, problem: str) -> UsageError:
+    return UsageError([diagnostic("D872", path=str(path), problem=problem)])
+
+
+def publish(out: Path, writers: Mapping[str, Callable[[Path], object]]) -> None:
+    """Write all files of a run, then put the directory in its place and forget the checkpoint.
+
+    Args:    out: as `claim` returned it. writers: for each file name a function that writes that file.
+    Raises:  UsageError D872: the directory cannot be written, or something else was put there meanwhile.
+    """
+    partial = partial_directory(out)
+    try:
+        for name in ("run", "old"):
+            shutil.rmtree(partial / name, ignore_errors=True)
+        (partial / "run").mkdir(parents=True)
+        for name, write in writers.items():
+            write(partial / "run" / name)
+        if out.is_dir():
+            if any(out.iterdir()) and not _is_run(out):
+                raise _refused(out, "was changed by someone else while the run lasted")
+            out.rename(partial / "old")
+        (partial / "run").rename(out)
+        shutil.rmtree(partial / "old", ignore_errors=True)
+        discard(out)
+    except OSError as error:
+        raise _refused(out, f"cannot be written: {error.strerror or error}") from None
+
+
+def discard(out: Path) -> None:
+    """Remove the checkpoint of a run, and its directory if nothing else is in it."""
+    partial = partial_directory(out)
+    (partial / "checkpoint.json").unlink(missing_ok=True)
+    if partial.is_dir() and not any(partial.iterdir()):
+        partial.rmdir()
+
+
+def save_checkpoint(out: Path, fingerprint: str, state: Mapping[str, Any]) -> None:
+    """Keep the state of an unfinished run; a crash while writing leaves the checkpoint before it."""
+    partial = partial_directory(out)
+    fresh = partial / "checkpoint.json.new"
+    document = {"schema": CHECKPOINT_SCHEMA, "fingerprint": fingerprint, **state}
+    try:
+        partial.mkdir(parents=True, exist_ok=True)
+        fresh.write_text(dumps(document), encoding="utf-8")
+        fresh.replace(partial / "checkpoint.json")
+    except OSError as error:
+        raise _refused(out, f"cannot be written: {error.strerror or error}") from None
+
+
+def load_checkpoint(out: Path, fingerprint: str) -> dict[str, Any] | None:
+    """Return the state of an unfinished run with the same settings; None if there is none that is sound."""
+    place = partial_directory(out) / "checkpoint.json"
+    try:
+        if place.stat().st_size > _LARGEST_CHECKPOINT:
+            return None
+        document = json.loads(place.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    if not isinstance(document, dict) or document.get("schema") != CHECKPOINT_SCHEMA:
+        return None
+    return document if document.get("fingerprint") == fingerprint else None

@@ -1,0 +1,201 @@
+"""The policy that comes out of training: one action for every state.
+
+In: a Q table, or the `policy.json` of a finished run. Out: the greedy path, and `Policy`, whose `act` takes
+an observation of the environment as gymnasium gives it. A policy file is data: it is checked before use, and
+carries the names of its states, so that acting needs neither the spec nor the environment.
+"""
+
+import json
+import operator
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import inf, isfinite
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from stlspec.errors import DataError, diagnostic
+from stlspec.learning.shaping import RUNS
+
+SCHEMA = "stlspec.policy/1"
+FILE = "policy.json"
+_LARGEST_FILE = 256 * 2**20
+
+State = int | tuple[int, int]
+"""A state as files have it: its number, or (row, col) on maps."""
+
+
+def greedy_action(values: Sequence[float]) -> int:
+    """Return the action of the largest value, the lowest on ties. Paper: Algorithm 2, its last line."""
+    return values.index(max(values))
+
+
+def greedy_path(
+    q: Sequence[Sequence[float]],
+    transitions: Sequence[Sequence[int]],
+    endings: Sequence[int],
+    start: int,
+    max_steps: int,
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Follow the best actions from the start until an episode would end.
+
+    Paper: Algorithm 2, "policy from start".
+
+    Args:    q: (n_states, n_actions). transitions: the next states. endings: (n_states,), `RUNS` where an
+             episode goes on. max_steps: the step limit.
+    Returns: n + 1 states and n actions, n <= max_steps.
+    """
+    state, first_visit = start, {start: 0}
+    states, actions = [start], []
+    while endings[state] == RUNS and len(actions) < max_steps:
+        actions.append(greedy_action(q[state]))
+        state = transitions[state][actions[-1]]
+        states.append(state)
+        if state in first_visit:
+            # from here on it repeats itself up to the step limit
+            entry = first_visit[state]
+            laps = max_steps // (len(actions) - entry)
+            states = (states + states[entry + 1 :] * laps)[: max_steps + 1]
+            actions = (actions + actions[entry:] * laps)[:max_steps]
+            break
+        first_visit[state] = len(actions)
+    return tuple(states), tuple(actions)
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """A greedy policy: `actions[k]` is the action in `states[k]`, `q[k]` the values it was chosen by.
+
+    environment: the description of the environment that it was learned in. A masked action has Q = -inf.
+    """
+
+    environment: MappingProxyType[str, Any]
+    n_actions: int
+    states: tuple[State, ...]
+    actions: tuple[int, ...]
+    q: tuple[tuple[float, ...], ...]
+    _rows: dict[State, int] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_rows", {state: row for row, state in enumerate(self.states)})
+
+    def act(self, observation: Any) -> int:
+        """Return the action to take.
+
+        Not in the paper: the way out of the product, into the user's own loop.
+
+        Args:    observation: the number of a state, or [row, col]; numbers may be numpy's.
+        Returns: the number of an action.
+        Raises:  DataError D874: the observation is no state of the policy.
+        """
+        row = self._row(observation)
+        if row is None:
+            example = list(self.states[0]) if isinstance(self.states[0], tuple) else self.states[0]
+            shown = repr(observation)[:60]
+            raise DataError(
+                [diagnostic("D874", observation=shown, states=len(self.states), example=f"such as {example}")]
+            )
+        return self.actions[row]
+
+    def _row(self, observation: Any) -> int | None:
+        if getattr(observation, "ndim", None) == 1:
+            observation = observation.tolist()
+        try:
+            if isinstance(observation, list | tuple):
+                row, column = map(operator.index, observation)
+                return self._rows.get((row, column))
+            number = operator.index(observation)
+        except (TypeError, ValueError):
+            return None
+        return number if 0 <= number < len(self.states) else None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the document that `load_policy` reads; the row of a state is its number."""
+        return {
+            "schema": SCHEMA,
+            "env": dict(self.environment),
+            "n_actions": self.n_actions,
+            "states": [list(s) if isinstance(s, tuple) else s for s in self.states],
+            "actions": list(self.actions),
+            "q": [[v if isfinite(v) else ("inf" if v > 0 else "-inf") for v in row] for row in self.q],
+        }
+
+
+def load_policy(path: str | Path) -> Policy:
+    """Read the policy of a finished run.
+
+    Not in the paper: see `Policy.act`.
+
+    Args:    path: the directory given as `out`, or the policy.json in it.
+    Returns: the policy.
+    Raises:  DataError D873: there is no policy, or the file is damaged.
+    """
+    place = Path(path)
+    if place.is_dir():
+        place = place / FILE
+    try:
+        if place.stat().st_size > _LARGEST_FILE:
+            raise _Damage("the file is larger than any policy")
+        document = json.loads(place.read_text(encoding="utf-8"))
+        return _policy(document)
+    except OSError as error:
+        problem = error.strerror or "it cannot be read"
+    except (ValueError, OverflowError, RecursionError) as error:
+        problem = str(error) if isinstance(error, _Damage) else "it is not JSON in UTF-8"
+    raise DataError([diagnostic("D873", file=str(place), problem=problem)])
+
+
+class _Damage(ValueError):
+    """What is wrong with the document, in the words of D873."""
+
+
+def _policy(document: Any) -> Policy:
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        raise _Damage(f"its schema is not {SCHEMA}")
+    environment, n_actions = document.get("env"), document.get("n_actions")
+    if not isinstance(environment, dict) or type(n_actions) is not int or n_actions < 1:
+        raise _Damage("'env' or 'n_actions' is missing or of the wrong type")
+    states, actions, q = (_list(document, key) for key in ("states", "actions", "q"))
+    if not len(states) == len(actions) == len(q):
+        raise _Damage("'states', 'actions' and 'q' differ in length")
+    named = tuple(_state(x) for x in states)
+    if len(set(named)) < len(named):
+        raise _Damage("a state occurs twice")
+    return Policy(
+        MappingProxyType(environment),
+        n_actions,
+        named,
+        tuple(_action(x, n_actions) for x in actions),
+        tuple(_values(x, n_actions) for x in q),
+    )
+
+
+def _list(document: dict[str, Any], key: str) -> list[Any]:
+    value = document.get(key)
+    if not isinstance(value, list) or not value:
+        raise _Damage(f"'{key}' must be a list that is not empty")
+    return value
+
+
+def _state(value: Any) -> State:
+    if type(value) is int and value >= 0:
+        return value
+    if isinstance(value, list) and len(value) == 2 and all(type(x) is int and x >= 0 for x in value):
+        return (value[0], value[1])
+    raise _Damage(f"{str(value)[:40]!r} is not a state: a number or [row, col]")
+
+
+def _action(value: Any, n_actions: int) -> int:
+    if type(value) is int and 0 <= value < n_actions:
+        return value
+    raise _Damage(f"{str(value)[:40]!r} is not an action from 0 to {n_actions - 1}")
+
+
+def _values(row: Any, n_actions: int) -> tuple[float, ...]:
+    if not isinstance(row, list) or len(row) != n_actions:
+        raise _Damage(f"a row of 'q' does not have {n_actions} values")
+    named = {"inf": inf, "-inf": -inf}
+    values = [named.get(x, x) if isinstance(x, str) else x for x in row]
+    if not all(type(x) in (int, float) and x == x for x in values):
+        raise _Damage("a value of 'q' is not a number")
+    return tuple(map(float, values))

@@ -1,0 +1,143 @@
+"""CSV: a header with the names of signals, one row a sample.
+
+In: a file; the columns `time`, `episode` and `action` have their own meaning, every other one is a signal.
+Out: one `Recording` an episode. Columns are converted whole, and word by word only where a column is not all
+numbers, so that a large file costs little more than splitting it.
+"""
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stlspec.readers.model import (
+    Array,
+    Recording,
+    checked,
+    column_of,
+    episode_rows,
+    number_of_word,
+    read_text,
+    refusal,
+    repeated,
+)
+
+_EXPECTED = "a header with the names of the columns, then one row a sample"
+
+
+def read(path: Path) -> list[Recording]:
+    """Read a CSV file.
+
+    Not in the paper: a file format.
+
+    Raises: DataError D803, D805, D830, D832 to D836, D838, D840: the file cannot be used.
+    """
+    text = read_text(path, _EXPECTED)
+    header, rows = _rows(text, path)
+    if not rows:
+        raise refusal("D803", path, where=": the file has a header and nothing else")
+    words = dict(zip(header, zip(*rows, strict=True), strict=True))
+    labels = words.pop("episode", None)
+    actions = words.pop("action", None)
+    plain = "_" not in text
+    columns = {name: _column(column, plain) for name, column in words.items()}
+    time = columns.pop("time", None)
+    groups = [(None, slice(None))] if labels is None else _groups(labels)
+    return [
+        checked(
+            Recording(
+                time=None if time is None else time[at],
+                columns={name: column[at] for name, column in columns.items()},
+                actions=None if actions is None else _actions(actions, at, path),
+                episode=label,
+            ),
+            path,
+        )
+        for label, at in groups
+    ]
+
+
+def _rows(text: str, path: Path) -> tuple[list[str], list[list[str]]]:
+    """Split the text; every row comes out as long as the header."""
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    header: list[str] = []
+    rows: list[list[str]] = []
+    try:
+        for row in reader:
+            if not row:
+                continue
+            if not header:
+                header = _header(row, path)
+            elif len(row) == len(header):
+                rows.append(row)
+            else:
+                _ragged(row, header, reader.line_num, path)
+    except csv.Error as error:
+        where = f" (line {reader.line_num})"
+        hint = "put values that hold a comma or a quote in double quotes, and close them"
+        raise refusal("D836", path, format="CSV", reason=str(error), where=where, help=hint) from None
+    if not header:
+        raise refusal("D833", path, expected=_EXPECTED)
+    return header, rows
+
+
+def _header(row: Sequence[str], path: Path) -> list[str]:
+    names = [name.strip() for name in row]
+    if "" in names:
+        hint = "name every column; with pandas, write to_csv(..., index=False)"
+        raise refusal(
+            "D835", path, reason=f"column {names.index('') + 1} of the header has no name", help=hint
+        )
+    if all(isinstance(number_of_word(name), float) for name in names):
+        hint = "the first row names the columns, such as time,x,y"
+        raise refusal("D835", path, reason="the first row holds numbers, not names of columns", help=hint)
+    twice = repeated(names)
+    if twice is not None:
+        reason = f"the header has the column '{twice[:60]}' twice"
+        raise refusal("D835", path, reason=reason, help="give each column a name of its own")
+    return names
+
+
+def _ragged(row: Sequence[str], header: Sequence[str], line: int, path: Path) -> None:
+    hint = "give the row one value for every column"
+    for separator, called in ((";", "semicolons"), ("\t", "tabs")):
+        if len(header) == 1 and separator in header[0]:
+            hint = f"the columns seem to be separated by {called}; separate them by commas"
+    found = f"{len(row)} column{'s' if len(row) != 1 else ''}"
+    raise refusal("D834", path, line=line, found=found, expected=len(header), help=hint)
+
+
+def _column(words: Sequence[str], plain: bool) -> Array:
+    """Convert a column of text; `plain` promises that no underscore makes Python read 1_0 as ten."""
+    if plain:
+        try:
+            return np.array(list(map(float, words)), dtype=np.float64)
+        except ValueError:
+            pass
+    return column_of([number_of_word(word) for word in words])
+
+
+def _groups(labels: Sequence[str]) -> list[tuple[str | None, Any]]:
+    groups = episode_rows(labels)
+    return [(label if len(groups) > 1 else None, at) for label, at in groups]
+
+
+def _actions(words: Sequence[str], at: Any, path: Path) -> tuple[Any, ...]:
+    """Take the actions of one episode: none in its first row, one in every other."""
+    own = [word.strip() for word in np.array(words, dtype=object)[at]]
+    if own[0]:
+        raise refusal("D840", path, reason=f"the first row of an episode has the action '{own[0][:40]}'")
+    if "" in own[1:]:
+        sample = own.index("", 1)
+        raise refusal("D840", path, reason=f"sample {sample} of an episode has no action")
+    return tuple(_action(word) for word in own[1:])
+
+
+def _action(word: str) -> int | float | bool | str:
+    value = number_of_word(word)
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value

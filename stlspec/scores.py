@@ -1,0 +1,263 @@
+"""How well each demonstration meets each requirement, and how the demonstrations rank.
+
+In: a compiled spec and demonstrations. Out: a `Ranking`: label, reward r_d and rank of every demonstration,
+robustness, verdict and witness of every requirement. Labels go by verdicts, never by the sign of a
+robustness; a robustness is bounded before it is weighed, so that no requirement drowns the others by its unit.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Literal
+
+from stlspec.compiler.bundle import Bounding, BundleData, Requirement
+from stlspec.demos import BoundDemonstration, Demonstration, bind
+from stlspec.envs.model import Environment
+from stlspec.errors import DataError, diagnostic
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict, evaluate
+from stlspec.semantics.witness import reason
+
+Label = Literal["good", "incomplete", "bad"]
+LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
+"""The labels, worst first."""
+
+SAME_REWARD = 1e-9
+"""Rewards of one label that differ by no more than this from the group's first share a rank."""
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementScore:
+    """How one demonstration meets one requirement.
+
+    bounded: the robustness after `bounded_robustness`; 0 if vacuous. result: the evaluation behind it.
+    reason: why and when it fails, in words; "" if it holds.
+    """
+
+    bounded: float
+    result: RequirementResult
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class DemonstrationScore:
+    """How one demonstration meets all requirements.
+
+    label, reward (r_d) and rank (1 = worst) are None where a verdict is undecided, or where the evaluation
+    was not asked for at sample 0.
+    """
+
+    name: str
+    label: Label | None
+    reward: float | None
+    rank: int | None
+    requirements: Mapping[str, RequirementScore]
+
+
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """The scores of all demonstrations, in the order in which they were given.
+
+    requirements: name, strength, weight (softmax) and raw weight of each. at: the sample asked about, None =
+    the demonstrations as a whole. enclosed: whether each robustness comes with an enclosure.
+    """
+
+    requirements: tuple[tuple[str, str, float, int], ...]
+    demonstrations: tuple[DemonstrationScore, ...]
+    at: int | None = None
+    enclosed: bool = False
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the `stlspec.score/1` document."""
+        keys = ("name", "strength", "weight", "raw_weight")
+        return {
+            "schema": "stlspec.score/1",
+            "requirements": [dict(zip(keys, row, strict=True)) for row in self.requirements],
+            "demonstrations": [self._demonstration(d) for d in self.demonstrations],
+        }
+
+    def _demonstration(self, score: DemonstrationScore) -> dict[str, Any]:
+        whole = {"label": score.label, "reward": score.reward, "rank": score.rank}
+        return {
+            "name": score.name,
+            **(whole if self.at is None else {}),
+            "requirements": {name: self._requirement(x) for name, x in score.requirements.items()},
+        }
+
+    def _requirement(self, score: RequirementScore) -> dict[str, Any]:
+        result = score.result
+        enclosure = {"low": number(result.low), "high": number(result.high)} if self.enclosed else {}
+        witness = result.witness
+        return {
+            "robustness": number(result.robustness),
+            **enclosure,
+            "bounded": score.bounded,
+            "verdict": result.verdict.value,
+            "vacuous": result.vacuous,
+            "witness": None if witness is None else {"sample": witness.sample, "time": witness.time},
+        }
+
+
+def number(value: float) -> float | str:
+    """Return `value` as JSON can hold it: an infinity becomes the string "inf" or "-inf"."""
+    return value if math.isfinite(value) else ("inf" if value > 0 else "-inf")
+
+
+def bounded_robustness(robustness: float, bound: Bounding, scale: float) -> float:
+    """Bring a robustness to a scale on which it can be added to others.
+
+    Paper: section 3.1, "bounded to specific ranges ... such as using tanh or piece-wise linear functions".
+
+    Args:    robustness: in the unit of its signals. bound: "tanh", "linear" (clipped to [-1, 1]) or "none".
+             scale: the robustness that counts as 1 before bounding, same unit, > 0.
+    Returns: no unit; in [-1, 1] unless bound is "none".
+    """
+    ratio = robustness / scale
+    if bound == "tanh":
+        return math.tanh(ratio)
+    return max(-1.0, min(1.0, ratio)) if bound == "linear" else ratio
+
+
+def demonstration_reward(weights: Sequence[float], bounded: Sequence[float]) -> float:
+    """Weigh the robustness of a demonstration: r_d = sum of w(phi_i) * rob_i.
+
+    Paper: equation (2), total_demo_rob.
+
+    Args:    weights: (n_requirements,), softmax of the raw weights. bounded: (n_requirements,).
+    Returns: r_d, no unit.
+    """
+    return math.fsum(w * b for w, b in zip(weights, bounded, strict=True))
+
+
+def demonstration_label(hard: Iterable[Verdict], soft: Iterable[Verdict]) -> Label | None:
+    """Call a demonstration good, incomplete or bad.
+
+    Paper: Definitions 3 and 4, read by verdict; `incomplete` stands in its experiments.
+
+    Args:    hard, soft: the verdicts of the requirements.
+    Returns: "bad" if a hard one is violated, "incomplete" if a soft one is, else "good"; None if a verdict is
+             undecided.
+    """
+    hard, soft = list(hard), list(soft)
+    if Verdict.UNDECIDED in hard or Verdict.UNDECIDED in soft:
+        return None
+    if Verdict.VIOLATED in hard:
+        return "bad"
+    return "incomplete" if Verdict.VIOLATED in soft else "good"
+
+
+def ranks(labels: Sequence[Label | None], rewards: Sequence[float]) -> list[int | None]:
+    """Rank demonstrations densely, 1 = worst: by label, then by reward.
+
+    Paper: Algorithm 1, line 12, with the labels first, so that a good demonstration outranks a bad one.
+
+    Args:    labels, rewards: (n_demonstrations,); those without a label get no rank.
+    Returns: the ranks; within a label a new one begins where the reward exceeds the group's first by > 1e-9.
+    """
+    keys = sorted((LABELS.index(x), rewards[i], i) for i, x in enumerate(labels) if x is not None)
+    found: list[int | None] = [None] * len(labels)
+    rank, group, first = 0, -1, -math.inf
+    for label, reward, index in keys:
+        if label != group or reward - first > SAME_REWARD:
+            rank, group, first = rank + 1, label, reward
+        found[index] = rank
+    return found
+
+
+def evaluate_demonstrations(
+    bundle: BundleData,
+    demonstrations: Iterable[Demonstration],
+    environment: Environment | None = None,
+    *,
+    end: str = "clip",
+    at: int = 0,
+    on_nan: str = "refuse",
+) -> list[tuple[BoundDemonstration, Evaluation]]:
+    """Find the signals of each demonstration, and evaluate all requirements over them.
+
+    Paper: Algorithm 1, lines 4 to 6 (rob_i^j). Arguments as for `score`.
+    """
+    evaluated = []
+    for demonstration in demonstrations:
+        bound = bind(bundle, demonstration, environment)
+        result = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
+        evaluated.append((bound, result))
+    return evaluated
+
+
+def score(
+    bundle: BundleData,
+    demonstrations: Iterable[Demonstration],
+    environment: Environment | None = None,
+    *,
+    end: str = "clip",
+    at: int | None = None,
+    on_nan: str = "refuse",
+) -> Ranking:
+    """Score and rank demonstrations.
+
+    Paper: Algorithm 1, lines 3 to 7 and 12.
+
+    Args:    bundle: the compiled spec. demonstrations: as `load_demonstrations` gives them.
+             environment: computes missing signals from states, for demonstrations that name none.
+             end: "clip", "strict" or "interval". at: ask about this sample instead of the whole; negative
+             counts from the end. on_nan: "refuse", "hold" or "drop".
+    Returns: the ranking, in the order of the demonstrations.
+    Raises:  DataError: signals are missing or unusable; D860: an infinite robustness under `bound none`.
+    """
+    evaluated = evaluate_demonstrations(
+        bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan
+    )
+    return rank_demonstrations(bundle, evaluated, at=at, enclosed=end == "interval")
+
+
+def rank_demonstrations(
+    bundle: BundleData,
+    evaluated: Sequence[tuple[BoundDemonstration, Evaluation]],
+    *,
+    at: int | None = None,
+    enclosed: bool = False,
+) -> Ranking:
+    """Bound, weigh, label and rank what `evaluate_demonstrations` found.
+
+    Paper: Algorithm 1, lines 6, 7 and 12; equation (2). Arguments and errors as for `score`.
+    """
+    scores = [
+        {r.name: _requirement_score(bundle, r, bound.name, result[r.name]) for r in bundle.requirements}
+        for bound, result in evaluated
+    ]
+    labels = [None if at is not None else _label(bundle, row) for row in scores]
+    rewards = [demonstration_reward(bundle.weights, [x.bounded for x in row.values()]) for row in scores]
+    demonstrations = [
+        DemonstrationScore(bound.name, label, None if label is None else reward, rank, MappingProxyType(row))
+        for (bound, _), label, reward, rank, row in zip(
+            evaluated, labels, rewards, ranks(labels, rewards), scores, strict=True
+        )
+    ]
+    requirements = tuple(
+        (r.name, r.strength, weight, raw)
+        for r, weight, raw in zip(bundle.requirements, bundle.weights, bundle.raw_weights, strict=True)
+    )
+    return Ranking(requirements, tuple(demonstrations), at, enclosed)
+
+
+def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label | None:
+    verdicts = [(r.strength, scores[r.name].result.verdict) for r in bundle.requirements]
+    return demonstration_label(
+        (v for strength, v in verdicts if strength == "hard"),
+        (v for strength, v in verdicts if strength == "soft"),
+    )
+
+
+def _requirement_score(
+    bundle: BundleData, requirement: Requirement, demonstration: str, result: RequirementResult
+) -> RequirementScore:
+    if result.vacuous:
+        return RequirementScore(0.0, result, reason(bundle, requirement, result))
+    if requirement.bound == "none" and math.isinf(result.robustness):
+        value = number(result.robustness)
+        raise DataError(
+            [diagnostic("D860", file=demonstration, requirement=requirement.name, value=value)]
+        )
+    bounded = bounded_robustness(result.robustness, requirement.bound, requirement.scale)
+    return RequirementScore(bounded, result, reason(bundle, requirement, result))

@@ -1,0 +1,77 @@
+"""Why a requirement has its value, in one line.
+
+In: the deciding predicate and the values of its operands at the deciding sample. Out: "d_obs = 0, needs >= 1".
+Numbers are cut to six digits unless that would hide which side of the bound the value is on.
+"""
+
+import operator
+from collections.abc import Callable, Sequence
+
+from stlspec.compiler.ir import COMPARISONS, Node
+from stlspec.compiler.printing import expression_text, number_text
+from stlspec.semantics.robustness import evaluate_nodes
+from stlspec.traces import Trace
+
+VACUOUS = "no sample in its window"
+CONSTANT = "it is constant"
+
+_COMPLEMENT = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "=="}
+_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+_COMPARE: dict[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+
+
+def reason_text(nodes: Sequence[Node], predicate: int, negated: bool, trace: Trace, sample: int) -> str:
+    """Say what a predicate's operands are at a sample, and what is needed of them.
+
+    Not in the paper: it serves the reports.
+
+    Args:    nodes: the DAG. predicate: a comparison or a Boolean signal. negated: it must be false for the
+             requirement to hold. trace: one trace. sample: the deciding one.
+    Returns: such as "d_obs = 0, needs >= 1", "x = 3, needs > y = 2", "in_a is false, needs true".
+    """
+    node = nodes[predicate]
+    if node.op == "bool":
+        value = bool(trace.signals[str(node.value)][sample])
+        return f"{node.value} is {_truth(value)}, needs {_truth(not negated)}"
+    left, right = (float(v[sample]) for v in evaluate_nodes(nodes, node.children, trace))
+    sides = (_Side(nodes, node.children[0], left), _Side(nodes, node.children[1], right))
+    sign = COMPARISONS[node.op]
+    if sides[0].constant and not sides[1].constant:
+        sides, sign = (sides[1], sides[0]), _MIRROR[sign]
+    exact = not _same_side(sign, sides[0].value, sides[1].value)
+    needed = _COMPLEMENT[sign] if negated else sign
+    return f"{sides[0].text(exact)}, needs {needed} {sides[1].text(exact)}"
+
+
+class _Side:
+    """One side of a comparison: its text and its value at the sample."""
+
+    def __init__(self, nodes: Sequence[Node], index: int, value: float) -> None:
+        self.constant = nodes[index].op == "const"
+        self.value = value
+        self._name = expression_text(nodes, index)
+
+    def text(self, exact: bool) -> str:
+        number = number_text(self.value) if exact else _short(self.value)
+        return number if self.constant else f"{self._name} = {number}"
+
+
+def _short(value: float) -> str:
+    return f"{value + 0.0:.6g}"
+
+
+def _same_side(sign: str, left: float, right: float) -> bool:
+    """Say whether the shortened numbers still stand in the same relation."""
+    shortened = _COMPARE[sign](float(_short(left)), float(_short(right)))
+    return shortened == _COMPARE[sign](left, right)
+
+
+def _truth(value: bool) -> str:
+    return "true" if value else "false"

@@ -1,0 +1,127 @@
+"""Robustness of a formula at every sample, node by node over the DAG.
+
+In: the formula DAG, some of its nodes, a trace. Out: the robustness of each of these at every sample. A
+predicate exactly on its bound counts as `TIE` if it holds and as -`TIE` if not, the smallest numbers there
+are: min, max and negation only select and flip, so the sign of every value is the Boolean verdict, strict
+and non-strict comparisons kept apart, and no value is 0. `shown` turns ties into the 0 that they stand for.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stlspec.compiler.ir import COMPARISONS, REAL, Node
+from stlspec.semantics import windows
+from stlspec.semantics.expressions import expression_values
+from stlspec.semantics.windows import Grid
+from stlspec.traces import Trace
+
+Floats = NDArray[np.float64]
+
+TIE = 5e-324
+"""What a predicate on its bound counts as: the smallest positive number."""
+
+_TEMPORAL: dict[str, Callable[..., Floats]] = {
+    "always": windows.always,
+    "eventually": windows.eventually,
+    "until": windows.until,
+    "historically": windows.historically,
+    "once": windows.once,
+    "since": windows.since,
+}
+_HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})
+
+
+def evaluate_nodes(nodes: Sequence[Node], roots: Sequence[int], trace: Trace) -> list[Floats]:
+    """Evaluate nodes of the DAG at every sample.
+
+    Paper: robustness of STL, extended by past operators, next and prev.
+
+    Args:    nodes: the DAG, children first. roots: indices of the wanted nodes, formulas or real
+             expressions. trace: every signal that the roots use.
+    Returns: for each root its values, of the shape of a signal; not to be written to. In formulas a tie is
+             `TIE` or -`TIE`: see `shown`.
+    Raises:  DataError: a real expression is not a number at some sample.
+    """
+    needed = needed_nodes(nodes, roots)
+    uses = Counter(c for i in needed for c in nodes[i].children)
+    uses.update(roots)
+    grid = Grid(trace.times, trace.spacing)
+    spare: list[Floats] = []
+    values: dict[int, Floats] = {}
+    with np.errstate(all="ignore"):
+        for index in needed:
+            node = nodes[index]
+            operands = [values[c] for c in node.children]
+            if node.op in REAL:
+                values[index] = expression_values(nodes, index, operands, trace)
+            else:
+                out = spare.pop() if spare else np.empty(trace.shape)
+                values[index] = _formula_values(node, operands, trace, grid, out)
+            for child in node.children:
+                uses[child] -= 1
+                if uses[child] == 0:
+                    freed = values.pop(child)
+                    if nodes[child].op not in REAL:
+                        spare.append(freed)
+    return [np.broadcast_to(values[root], trace.shape) for root in roots]
+
+
+def needed_nodes(nodes: Sequence[Node], roots: Sequence[int]) -> list[int]:
+    """Return the indices of the nodes that `roots` need, children first."""
+    wanted = set(roots)
+    for index in range(max(roots, default=-1), -1, -1):
+        if index in wanted:
+            wanted.update(nodes[index].children)
+    return sorted(wanted)
+
+
+def shown(values: Floats) -> Floats:
+    """Return a copy of robustness values with ties as the 0 that they stand for, never -0."""
+    result = np.array(values, dtype=np.float64)
+    result[np.abs(result) <= TIE] = 0.0
+    return result
+
+
+def _formula_values(node: Node, operands: list[Floats], trace: Trace, grid: Grid, out: Floats) -> Floats:
+    op = node.op
+    if op in COMPARISONS:
+        _compare(op, operands[0], operands[1], out)
+    elif op in _TEMPORAL:
+        _TEMPORAL[op](*operands, grid, node.interval, out)
+    elif op in ("and", "or"):
+        extremum = np.minimum if op == "and" else np.maximum
+        extremum(operands[0], operands[1], out=out)
+        for operand in operands[2:]:
+            extremum(out, operand, out=out)
+    elif op == "not":
+        np.negative(operands[0], out=out)
+    elif op == "next":
+        out[:-1] = operands[0][1:]
+        out[-1] = -np.inf
+    elif op == "prev":
+        out[1:] = operands[0][:-1]
+        out[0] = -np.inf
+    elif op == "bool":
+        out[...] = np.where(trace.signals[str(node.value)] != 0, np.inf, -np.inf)
+    else:
+        out[...] = np.inf if op == "true" else -np.inf
+    return out
+
+
+def _compare(op: str, left: Floats, right: Floats, out: Floats) -> None:
+    """Write the robustness of a predicate: the distance to its bound, negative where it does not hold."""
+    if op in ("lt", "le"):
+        np.subtract(right, left, out=out)
+    else:
+        np.subtract(left, right, out=out)
+    if op in ("eq", "ne"):
+        np.absolute(out, out=out)
+    if op == "eq":
+        np.negative(out, out=out)
+    # Equal infinities are on the bound too; their difference is no number.
+    tied = np.broadcast_to(np.equal(left, right), out.shape)
+    if tied.any():
+        out[tied] = TIE if op in _HOLDS_ON_BOUND else -TIE

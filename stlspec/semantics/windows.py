@@ -1,0 +1,219 @@
+"""Sliding windows: always, eventually, until and their past mirrors, for a whole signal at once.
+
+In: robustness at every sample, (n_samples,) or time-major (n_samples, n_traces), the times, an interval in
+ticks. Out: the operator's robustness at every sample. The past operators are the future ones on views that
+run backwards in time, so there is one kernel of each kind and no special case for the past.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stlspec.compiler.ir import Interval
+from stlspec.semantics.scans import suffix_extremum, suffix_until
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# Two buffers of this many numbers stay in the processor's second-level cache.
+_BLOCK = 2**15
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """When the samples are: int64 ticks, and the ticks between neighbours where these are all equal."""
+
+    times: Ints
+    spacing: int | None
+
+    def reversed(self) -> "Grid":
+        """Return the same samples as seen backwards in time."""
+        return Grid(-self.times[::-1], self.spacing)
+
+
+def always(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return the least value in the window of every sample, +inf where the window is empty.
+
+    Paper: robustness of always.
+
+    Args:    values: (n_samples,) or (n_samples, n_traces). interval: closed, ticks ahead; (low, None) has no
+             end. out: where to write, not overlapping `values`; None: a new array.
+    Returns: the shape of `values`.
+    """
+    return _slide(np.minimum, values, grid, interval, out)
+
+
+def eventually(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return the greatest value in the window of every sample, -inf where the window is empty.
+
+    Paper: robustness of eventually.
+
+    Args:    as `always`.
+    Returns: the shape of `values`.
+    """
+    return _slide(np.maximum, values, grid, interval, out)
+
+
+def historically(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return `always` backwards in time; not in the paper, which has no past operators."""
+    out = np.empty(values.shape) if out is None else out
+    always(values[::-1], grid.reversed(), interval, out[::-1])
+    return out
+
+
+def once(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return `eventually` backwards in time; not in the paper, which has no past operators."""
+    out = np.empty(values.shape) if out is None else out
+    eventually(values[::-1], grid.reversed(), interval, out[::-1])
+    return out
+
+
+def until(left: Floats, right: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return the robustness of `left until[interval] right` at every sample; left counts on [t, t').
+
+    Paper: robustness of until, by the identity
+    p U[a,b] q = min(F[a,b] q, G[0,a) p, p U q at the first sample not before t + a): if p U q is decided
+    after t + b, then p holds as well up to any sample of the window, and F[a,b] q names one.
+
+    Args:    left, right: (n_samples,) or (n_samples, n_traces). interval, out: as `always`.
+    Returns: the shape of `left`.
+    """
+    low, high = interval
+    out = np.empty(left.shape) if out is None else out
+    if low == 0:
+        suffix_until(_columns(left), _columns(right), _columns(out))
+    else:
+        reached = np.empty(left.shape)
+        suffix_until(_columns(left), _columns(right), _columns(reached))
+        _ahead(reached, grid, low, out)
+        np.minimum(out, always(left, grid, (0, low - 1), reached), out=out)
+    if high is not None:
+        np.minimum(out, eventually(right, grid, interval), out=out)
+    return out
+
+
+def since(left: Floats, right: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
+    """Return `until` backwards in time: left counts on (t', t]; not in the paper."""
+    out = np.empty(left.shape) if out is None else out
+    until(left[::-1], right[::-1], grid.reversed(), interval, out[::-1])
+    return out
+
+
+def index_windows(grid: Grid, interval: Interval) -> tuple[Ints, Ints]:
+    """Return the windows as ranges of samples.
+
+    Not in the paper: sampled time.
+
+    Args:    interval: closed, ticks ahead.
+    Returns: first and end (exclusive) of the window of every sample, (n_samples,) each; both never decrease,
+             and first == end where the window is empty.
+    """
+    times, n = grid.times, len(grid.times)
+    low, high = interval
+    span = int(times[-1]) - int(times[0])
+    if grid.spacing is not None:
+        index = np.arange(n, dtype=np.int64)
+        begin = np.minimum(index + min(-(-low // grid.spacing), n), n)
+        end = np.full(n, n) if high is None else np.minimum(index + min(high // grid.spacing + 1, n), n)
+    else:
+        # Clipped to the length of the trace, which changes no window, so that the sums fit into int64.
+        begin = np.searchsorted(times, times + min(low, span + 1), side="left")
+        high = span if high is None else min(high, span)
+        end = np.searchsorted(times, times + high, side="right")
+    return begin, np.maximum(begin, end)
+
+
+def _columns(values: Floats) -> Floats:
+    """View as (n_samples, n_traces)."""
+    return values if values.ndim == 2 else values[:, None]
+
+
+def _slide(extremum: np.ufunc, values: Floats, grid: Grid, interval: Interval, out: Floats | None) -> Floats:
+    out = np.empty(values.shape) if out is None else out
+    if grid.spacing is not None:
+        low, high = interval
+        last = None if high is None else high // grid.spacing
+        _slide_even(extremum, _columns(values), -(-low // grid.spacing), last, _columns(out))
+    else:
+        _slide_uneven(extremum, _columns(values), *index_windows(grid, interval), _columns(out))
+    return out
+
+
+def _identity(extremum: np.ufunc) -> float:
+    return np.inf if extremum is np.minimum else -np.inf
+
+
+def _slide_even(extremum: np.ufunc, values: Floats, first: int, last: int | None, out: Floats) -> None:
+    """Slide over samples i + first to i + last."""
+    n = len(values)
+    if first >= n or (last is not None and last < first):
+        out[...] = _identity(extremum)
+        return
+    out[n - first :] = _identity(extremum)
+    values, out = values[first:], out[: n - first]
+    if last is None or last - first + 1 >= len(values):
+        suffix_extremum(extremum, values, out)
+        return
+    width = last - first + 1
+    n_whole = len(values) - width + 1
+    _whole_windows(extremum, values, width, out[:n_whole])
+    if width > 1:
+        # The windows that the end of the trace cuts off are suffixes.
+        suffix_extremum(extremum, values[n_whole:], out[n_whole:])
+
+
+def _whole_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -> None:
+    """Slide windows of `width` samples, none cut off, block by block."""
+    n, k = out.shape
+    rows = min(n, max(3 * width, _BLOCK // k))
+    columns = min(k, max(8, _BLOCK // (rows + width)))
+    buffers = np.empty((2, (rows + width) * columns))
+    for left in range(0, k, columns):
+        for top in range(0, n, rows):
+            target = out[top : top + rows, left : left + columns]
+            piece = values[top : top + len(target) + width - 1, left : left + columns]
+            _double(extremum, piece, width, target, buffers)
+
+
+def _double(extremum: np.ufunc, piece: Floats, width: int, out: Floats, buffers: Floats) -> None:
+    """Slide by repeated doubling: a window of 2k samples is two of k, and any window two that overlap."""
+    if width == 1:
+        out[...] = piece
+        return
+    current, span, turn = piece, 1, 0
+    while 2 * span < width:
+        rows = len(current) - span
+        doubled = buffers[turn, : rows * out.shape[1]].reshape(rows, -1)
+        extremum(current[:rows], current[span:], out=doubled)
+        current, span, turn = doubled, 2 * span, 1 - turn
+    shift = width - span
+    extremum(current[: len(out)], current[shift : shift + len(out)], out=out)
+
+
+def _slide_uneven(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, out: Floats) -> None:
+    """Slide over the samples begin[i] to end[i], by the same doubling, one level after the other."""
+    lengths = end - begin
+    out[lengths == 0] = _identity(extremum)
+    # frexp counts the binary digits: level l holds lengths from 2**l to 2**(l+1) - 1, level -1 the length 0.
+    levels = (np.frexp(lengths)[1] - 1).astype(np.int8)
+    current, span = values, 1
+    for level in range(int(levels.max()) + 1):
+        chosen = np.flatnonzero(levels == level)
+        if len(chosen):
+            out[chosen] = extremum(current[begin[chosen]], current[end[chosen] - span])
+        rows = max(len(current) - span, 0)
+        current, span = extremum(current[:rows], current[span:]), 2 * span
+
+
+def _ahead(values: Floats, grid: Grid, low: int, out: Floats) -> None:
+    """Write the value at the first sample not before t + low; -inf past the end."""
+    if grid.spacing is not None:
+        shift = min(-(-low // grid.spacing), len(values))
+        out[: len(values) - shift] = values[shift:]
+        out[len(values) - shift :] = -np.inf
+        return
+    begin, _ = index_windows(grid, (low, None))
+    inside = begin < len(values)
+    out[inside] = values[begin[inside]]
+    out[~inside] = -np.inf

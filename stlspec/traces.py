@@ -1,0 +1,318 @@
+"""Traces: sampled signals on integer time, validated once.
+
+In: the columns of one recording (or of a batch of recordings) and the spec's declarations. Out: an immutable
+`Trace` whose arrays nobody else holds. Time becomes int64 ticks here, relative to the first stamp, and is
+rounded here only: from then on every window is found by integer arithmetic, so every engine finds the same.
+"""
+
+import difflib
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stlspec.compiler.bundle import Signal, TimeBase
+from stlspec.compiler.printing import number_text
+from stlspec.errors import DataError, diagnostic
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# A window ends at most one trace length after its sample, so twice the longest trace must fit into int64.
+_LONGEST_TICKS = 2.0**62
+_PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trace:
+    """Sampled signals; of one recording, or of a batch of recordings with common times.
+
+    times: int64 ticks since the first sample, (n_samples,), strictly increasing.
+    signals: float64, (n_samples,), for a batch time-major (n_samples, n_traces); Booleans are 1.0 and 0.0.
+    spacing: ticks between samples if it is the same everywhere (or there is one sample), else None.
+    ticks_per_unit, unit: of the spec's time. stamps: the time stamps as given, in `unit`, if they mean
+    anything (not for `time step`). numbers: for a batch, the number of each trace in messages.
+    """
+
+    times: Ints
+    signals: Mapping[str, Floats]
+    spacing: int | None
+    ticks_per_unit: int
+    unit: str = "step"
+    stamps: Floats | None = None
+    numbers: tuple[int, ...] | None = None
+    file: str | None = None
+
+    @property
+    def n_samples(self) -> int:
+        """Number of samples."""
+        return len(self.times)
+
+    @property
+    def n_traces(self) -> int:
+        """Number of traces: 1 unless this is a batch."""
+        return 1 if self.numbers is None else len(self.numbers)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of every signal."""
+        return (self.n_samples,) if self.numbers is None else (self.n_samples, self.n_traces)
+
+    def time(self, sample: int) -> float:
+        """Return the time of a sample in the spec's unit, as it was given if it was given."""
+        if self.stamps is not None:
+            return float(self.stamps[sample])
+        return int(self.times[sample]) / self.ticks_per_unit
+
+    def place(self, sample: int, column: int = 0) -> str:
+        """Name a sample in a message: "3", or "3 of trace 1" in a batch."""
+        return str(sample) if self.numbers is None else f"{sample} of trace {self.numbers[column]}"
+
+
+def make_trace(
+    base: TimeBase,
+    declared: Sequence[Signal],
+    signals: Mapping[str, ArrayLike],
+    time: ArrayLike | None = None,
+    *,
+    required: Collection[str] | None = None,
+    numbers: Sequence[int] | None = None,
+    file: str | None = None,
+) -> Trace:
+    """Check the columns of a recording against the declarations and make a trace of them.
+
+    Not in the paper, which takes traces as given.
+
+    Args:
+        base: how the spec measures time.
+        declared: the declared signals; other columns are ignored, but still tell how many samples there are.
+        signals: for each name n_samples numbers or Booleans, or (n_traces, n_samples) of them for a batch.
+        time: n_samples time stamps in the spec's unit, common to a batch.
+        required: names of the signals that must be there; None: all declared ones.
+        numbers: for a batch, the numbers of its traces in messages; None: from 0.
+        file: where the data come from, for messages.
+
+    Returns: the trace; its arrays are copies.
+
+    Raises:
+        DataError: a signal is missing, has a wrong length or shape, or a value that is no number, is NaN or
+            outside its declared range; there are no samples; time does not increase, does not fit the
+            period, or is absent where the spec needs it.
+    """
+    needed = {s.name for s in declared} if required is None else required
+    columns: dict[str, Floats] = {}
+    for signal in declared:
+        if signal.name in signals:
+            values = signals[signal.name]
+            columns[signal.name] = _column(signal.name, values, file, signal.type, numbers or ())
+        elif signal.name in needed:
+            raise _missing(signal.name, signals, file)
+    shape = _common_shape(columns, signals, time, numbers, file)
+    times, stamps = _times(base, shape[0], time, file)
+    if len(shape) == 1:
+        numbers = None
+    elif numbers is None:
+        numbers = range(shape[1])
+    trace = Trace(
+        times=_frozen(times),
+        signals=MappingProxyType({name: _frozen(column) for name, column in columns.items()}),
+        spacing=_spacing(base, times),
+        ticks_per_unit=base.ticks_per_unit,
+        unit=base.unit,
+        stamps=None if stamps is None else _frozen(stamps),
+        numbers=None if numbers is None else tuple(numbers),
+        file=file,
+    )
+    _check_values(trace, declared)
+    return trace
+
+
+def _frozen(values: NDArray[Any]) -> NDArray[Any]:
+    values.flags.writeable = False
+    return values
+
+
+def _error(code: str, file: str | None, **fields: Any) -> DataError:
+    return DataError([diagnostic(code, file=file, **fields)])
+
+
+def _missing(name: str, signals: Mapping[str, ArrayLike], file: str | None) -> DataError:
+    close = difflib.get_close_matches(name, [str(s) for s in signals], n=1)
+    known = ", ".join(f"'{s}'" for s in list(signals)[:5])
+    hint = f"did you mean '{close[0]}'?" if close else f"the data has {known or 'no signals'}"
+    return _error("D804", file, signal=name, help=f'{hint} (`from "{close[0]}"` reads it)' if close else hint)
+
+
+def _column(
+    name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()
+) -> Floats:
+    """Convert the values of one signal to a fresh float64 array, time-major."""
+    try:
+        raw = np.asarray(values)
+    except (ValueError, TypeError, OverflowError):
+        raise _error("D813", file, what=f"'{name}'", problem="has rows of unequal length or depth") from None
+    if raw.ndim not in (1, 2):
+        problem = "is a single value" if raw.ndim == 0 else f"has {raw.ndim} dimensions"
+        raise _error("D813", file, what=f"'{name}'", problem=problem)
+    if raw.dtype.kind not in "biuf":
+        raw = _converted(values, name, kind, numbers, file)
+    with np.errstate(over="ignore"):
+        column = np.array(raw.T, dtype=np.float64, order="C", copy=True)
+    if kind == "bool":
+        wrong = (column != 0) & (column != 1) & ~np.isnan(column)
+        if wrong.any():
+            at = _first(wrong)
+            raise _bad_value(name, kind, column[at], at, numbers, file)
+    return column
+
+
+def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], file: str | None) -> Floats:
+    """Convert what numpy does not see as numbers; the first value that is none is reported."""
+    objects = np.asarray(values, dtype=object)
+    result = np.empty(objects.shape)
+    for at, value in np.ndenumerate(objects):
+        try:
+            if isinstance(value, (str, bytes, complex)):
+                raise TypeError
+            result[at] = value
+        except (TypeError, ValueError, OverflowError):
+            raise _bad_value(name, kind, value, at[::-1], numbers, file) from None
+    return result
+
+
+def _bad_value(
+    name: str, kind: str, value: object, at: tuple[int, ...], numbers: Sequence[int], file: str | None
+) -> DataError:
+    shown = number_text(float(value)) if isinstance(value, (float, np.floating)) else _clipped(repr(value))
+    where = str(at[0]) if len(at) == 1 else f"{at[0]} of trace {numbers[at[1]] if numbers else at[1]}"
+    hint = "write true, false, 1 or 0" if kind == "bool" else "write a number, inf or -inf"
+    return _error("D806", file, signal=name, value=shown, sample=where, type=kind, help=hint)
+
+
+def _clipped(text: str) -> str:
+    return text if len(text) <= 30 else text[:29] + "…"
+
+
+def _first(mask: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Return the index of the first True, earliest sample first."""
+    return tuple(int(i) for i in np.unravel_index(int(mask.argmax()), mask.shape))
+
+
+def _common_shape(
+    columns: Mapping[str, Floats],
+    signals: Mapping[str, ArrayLike],
+    time: ArrayLike | None,
+    numbers: Sequence[int] | None,
+    file: str | None,
+) -> tuple[int, ...]:
+    """Return (n_samples,) or (n_samples, n_traces), the same for all signals."""
+    shapes = {name: column.shape for name, column in columns.items()}
+    if not shapes:
+        # No declared signal is here (the formulas use `now` only): any column tells the length.
+        others = list(signals.items())[:1] or ([] if time is None else [("time", time)])
+        shapes = {name: _column(name, values, file).shape for name, values in others}
+    if not shapes:
+        raise _error("D803", file, where=": there is neither a signal nor a time stamp")
+    other, expected = next(iter(shapes.items()))
+    for name, shape in shapes.items():
+        if len(shape) != len(expected):
+            raise _error("D813", file, what=f"'{name}'", problem=f"is not laid out like '{other}'")
+        if shape[0] != expected[0]:
+            raise _error("D805", file, signal=name, length=shape[0], other=other, expected=expected[0])
+        if shape != expected:
+            problem = f"has {shape[1]} traces, but '{other}' has {expected[1]}"
+            raise _error("D813", file, what=f"'{name}'", problem=problem)
+    if 0 in expected:
+        empty = f" in trace {numbers[0]}" if numbers else ""
+        raise _error("D803", file, where=empty if expected[0] == 0 else ": the batch has no traces")
+    return expected
+
+
+def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> tuple[Ints, Floats | None]:
+    """Return the ticks of the samples since the first, and the stamps if they count."""
+    index = np.arange(n, dtype=np.int64)
+    if time is None:
+        if base.kind == "stamps":
+            raise _error("D810", file, unit=base.unit)
+        return index * (base.period or 1), None
+    stamps = _column("time", time, file)
+    if stamps.ndim != 1:
+        raise _error(
+            "D813", file, what="'time'", problem="has one row for each trace, but the signals do not"
+        )
+    if len(stamps) != n:
+        raise _error("D805", file, signal="time", length=len(stamps), other="signals", expected=n)
+    with np.errstate(all="ignore"):
+        ticks = (stamps - stamps[0]) * base.ticks_per_unit
+    kept = np.isfinite(stamps) & (np.abs(ticks) < _LONGEST_TICKS)
+    if not kept.all():
+        at = int((~kept).argmax())
+        raise _error("D812", file, time=number_text(stamps[at]), sample=at)
+    rounded = np.rint(ticks).astype(np.int64)
+    _check_increasing(stamps if base.kind != "stamps" else rounded, stamps, file)
+    if base.kind == "step":
+        return index, None
+    if base.kind == "period":
+        rounded = _on_period(base, stamps, ticks, file)
+    return rounded, stamps
+
+
+def _check_increasing(values: NDArray[Any], stamps: Floats, file: str | None) -> None:
+    wrong = values[1:] <= values[:-1]
+    if wrong.any():
+        at = int(wrong.argmax()) + 1
+        previous, this = number_text(stamps[at - 1]), number_text(stamps[at])
+        raise _error("D802", file, sample=at, time=this, previous=previous)
+
+
+def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None) -> Ints:
+    """Take stamps that are close to k periods after the first as exactly that."""
+    period = base.period or 1
+    periods = ticks / period
+    whole = np.rint(periods)
+    wrong = np.abs(periods - whole) > _PERIOD_TOLERANCE
+    # Two stamps within the tolerance of the same multiple: the later one is not the next multiple.
+    wrong[1:] |= whole[1:] <= whole[:-1]
+    if wrong.any():
+        at = int(wrong.argmax())
+        length = f"{number_text(period / base.ticks_per_unit)} {base.unit}"
+        shown = number_text(stamps[at])
+        raise _error("D811", file, sample=at, time=shown, period=length, unit=base.unit)
+    return whole.astype(np.int64) * period
+
+
+def _spacing(base: TimeBase, times: Ints) -> int | None:
+    if len(times) == 1:
+        return base.period or base.ticks_per_unit
+    steps = np.diff(times)
+    return int(steps[0]) if (steps == steps[0]).all() else None
+
+
+def _check_values(trace: Trace, declared: Sequence[Signal]) -> None:
+    """Refuse NaN, and samples outside the range that their signal declares."""
+    for signal in declared:
+        column = trace.signals.get(signal.name)
+        if column is None:
+            continue
+        missing = np.isnan(column)
+        if missing.any():
+            at = _first(missing)
+            raise _error("D801", trace.file, signal=signal.name, **_where(trace, at))
+        low = -np.inf if signal.low is None else signal.low
+        high = np.inf if signal.high is None else signal.high
+        if (low, high) == (-np.inf, np.inf):
+            continue
+        outside = (column < low) | (column > high)
+        if outside.any():
+            at = _first(outside)
+            bounds = {"low": number_text(low), "high": number_text(high)}
+            value = number_text(column[at])
+            where = _where(trace, at)
+            raise _error("D807", trace.file, signal=signal.name, value=value, **bounds, **where)
+
+
+def _where(trace: Trace, at: tuple[int, ...]) -> dict[str, str]:
+    return {"sample": trace.place(*at), "time": number_text(trace.time(at[0]))}
