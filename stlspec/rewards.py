@@ -1,8 +1,8 @@
 """Algorithm 1: from ranked demonstrations to a reward for every state.
 
-In: a compiled spec and demonstrations with states. Out: a `RewardMap`, small JSON that carries over to another
-map of the same size. What a state gets follows from the label of the demonstration that visits it; every rule
-is a function of its own here, so that the map can be worked out by hand.
+In: a compiled spec and demonstrations with states. Out: a `RewardMap`, small JSON that carries over to
+another map of the same size. What a state gets follows from the label of the demonstration that visits it;
+every rule is a function of its own here, so that the map can be worked out by hand.
 """
 
 import json
@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from stlspec.compiler.bundle import BundleData, Requirement
+from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.demos import BoundDemonstration, Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic
@@ -26,7 +27,8 @@ from stlspec.scores import (
     evaluate_demonstrations,
     rank_demonstrations,
 )
-from stlspec.semantics.evaluation import Evaluation, Verdict
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
+from stlspec.semantics.robustness import evaluate_nodes
 
 SCHEMA = "stlspec.reward/1"
 SMALLEST_PENALTY = 0.01
@@ -74,9 +76,7 @@ class RewardMap:
             try:
                 table[environment.encode(state)] = value
             except DataError:
-                what, shown = "the reward map", list(state) if isinstance(state, tuple) else state
-                fields = {"env": environment.id, "states": environment.n_states}
-                raise DataError([diagnostic("D862", state=shown, what=what, **fields)]) from None
+                raise _foreign("the reward map", state, environment) from None
         return tuple(table)
 
     def to_json(self) -> dict[str, Any]:
@@ -152,3 +152,174 @@ def learner_reward(ranks: Sequence[int], values: Sequence[Mapping[int, float]]) 
     sums = {state: math.fsum(terms[state]) for state in sorted(terms)}
     largest = max(map(abs, sums.values()), default=0.0)
     return {state: value / largest for state, value in sums.items() if value} if largest else {}
+
+
+@dataclass(frozen=True, slots=True)
+class RankedStates:
+    """A demonstration as Algorithm 1 sees it: states by number, label and rank, what its states get."""
+
+    name: str
+    environment: Environment
+    states: tuple[int, ...]
+    label: Label
+    rank: int
+    values: Mapping[int, float]
+
+
+def ranked_states(
+    bundle: BundleData, demonstrations: Iterable[Demonstration], environment: Environment | None = None
+) -> tuple[RankedStates, ...]:
+    """Score demonstrations and give values to their states.
+
+    Paper: Algorithm 1, lines 3 to 12. Arguments and errors as for `infer_reward`.
+    """
+    evaluated = evaluate_demonstrations(bundle, demonstrations, environment)
+    ranking = rank_demonstrations(bundle, evaluated)
+    return tuple(
+        _ranked(bundle, bound, evaluation, score)
+        for (bound, evaluation), score in zip(evaluated, ranking.demonstrations, strict=True)
+    )
+
+
+def infer_reward(
+    bundle: BundleData,
+    demonstrations: Iterable[Demonstration],
+    environment: Environment | None = None,
+) -> RewardMap:
+    """Infer the reward of every state from ranked demonstrations.
+
+    Paper: Algorithm 1.
+
+    Args:    bundle: the compiled spec. demonstrations: with states. environment: where they were made, unless
+             they say so themselves.
+    Returns: the reward map; `warnings()` tells when it is 0 everywhere.
+    Raises:  DataError D861: a demonstration has no states, or no environment that numbers them; D862: the
+             demonstrations come from environments of different sizes; D860 and others as for `score`.
+    """
+    return reward_of(bundle, ranked_states(bundle, demonstrations, environment), environment)
+
+
+def reward_of(
+    bundle: BundleData, ranked: Sequence[RankedStates], environment: Environment | None = None
+) -> RewardMap:
+    """Combine what the demonstrations give to states into one map.
+
+    Paper: Algorithm 1, line 13. Arguments and errors as for `infer_reward`.
+    """
+    meaning = meaning_sha256(bundle)
+    home = ranked[0].environment if ranked else environment
+    if home is None:
+        return RewardMap(meaning, MappingProxyType({"id": None, "args": {}, "map": None}), (), ())
+    for other in ranked:
+        if (other.environment.n_states, other.environment.n_columns) != (home.n_states, home.n_columns):
+            last = other.environment.decode(max(other.states))
+            raise _foreign(f"demonstration '{other.name}'", last, home)
+    found = learner_reward([d.rank for d in ranked], [d.values for d in ranked])
+    states = tuple(_named(home.decode(state)) for state in found)
+    return RewardMap(meaning, MappingProxyType(home.describe()), states, tuple(found.values()))
+
+
+def _foreign(what: str, state: Any, environment: Environment) -> DataError:
+    shown = list(state) if isinstance(state, tuple) else state
+    env, states = environment.id, environment.n_states
+    return DataError([diagnostic("D862", state=shown, what=what, env=env, states=states)])
+
+
+def _named(state: Any) -> State:
+    return tuple(state) if isinstance(state, list) else state
+
+
+def _ranked(
+    bundle: BundleData,
+    bound: BoundDemonstration,
+    evaluation: Evaluation[RequirementResult],
+    score: DemonstrationScore,
+) -> RankedStates:
+    name, file = bound.name, bound.demonstration.file
+    if bound.states is None:
+        raise DataError([diagnostic("D861", file=file, name=name)])
+    if bound.environment is None or not bound.environment.n_states:
+        raise DataError([diagnostic("D875", file=file, name=name)])
+    assert score.label is not None
+    assert score.reward is not None
+    assert score.rank is not None
+    failed = [
+        (r, weight, score.requirements[r.name])
+        for r, weight in zip(bundle.requirements, bundle.weights, strict=True)
+        if r.strength == "hard" and evaluation[r.name].verdict is Verdict.VIOLATED
+    ]
+    violating = sorted({k for r, _, found in failed for k in violating_samples(bundle, r, found)})
+    penalised = penalty([weight for _, weight, _ in failed], [found.bounded for _, _, found in failed])
+    states = tuple(int(s) for s in bound.states)
+    values = demonstration_values(states, score.label, score.reward, violating, penalised)
+    return RankedStates(name, bound.environment, states, score.label, score.rank, MappingProxyType(values))
+
+
+def violating_samples(bundle: BundleData, requirement: Requirement, score: RequirementScore) -> list[int]:
+    """Find the samples at which a violated hard requirement is violated.
+
+    Paper: equation (3), s_bad = the states that do not satisfy psi in `always psi`.
+
+    Returns: the samples in the window of `always psi` where psi is false; for any other formula the witness.
+    """
+    root = bundle.nodes[requirement.root]
+    if root.op != "always" or root.interval is None:
+        witness = score.result.witness
+        return [] if witness is None else [witness.sample]
+    trace = score.result.origin.trace
+    (values,) = evaluate_nodes(bundle.nodes, root.children, trace)
+    low, high = root.interval
+    inside = trace.times >= low
+    if high is not None:
+        inside &= trace.times <= high
+    found: list[int] = np.flatnonzero((values < 0) & inside).tolist()
+    return found
+
+
+def load_reward(path: str | Path) -> RewardMap:
+    """Read a reward map.
+
+    Not in the paper: a file format.
+
+    Raises:  DataError D863: the file is missing, damaged, or of another kind.
+    """
+    place = Path(path)
+    try:
+        if place.stat().st_size > _LARGEST_FILE:
+            raise _DamageError("the file is larger than any reward map")
+        return _reward_map(json.loads(place.read_text(encoding="utf-8")))
+    except OSError as error:
+        problem = error.strerror or "it cannot be read"
+    except (ValueError, OverflowError, RecursionError) as error:
+        problem = str(error) if isinstance(error, _DamageError) else "it is not JSON in UTF-8"
+    raise DataError([diagnostic("D863", file=str(place), problem=problem)])
+
+
+class _DamageError(ValueError):
+    """What is wrong with the document, in the words of D863."""
+
+
+def _reward_map(document: Any) -> RewardMap:
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        raise _DamageError(f"its schema is not {SCHEMA}")
+    meaning, environment = document.get("meaning_sha256"), document.get("env")
+    states, values = document.get("states"), document.get("values")
+    if not isinstance(meaning, str) or not isinstance(environment, dict):
+        raise _DamageError("'meaning_sha256' or 'env' is missing or of the wrong type")
+    if not isinstance(states, list) or not isinstance(values, list) or len(states) != len(values):
+        raise _DamageError("'states' and 'values' must be lists of equal length")
+    named = tuple(_checked_state(state) for state in states)
+    if len(set(named)) < len(named):
+        raise _DamageError("a state occurs twice")
+    for value in values:
+        if type(value) not in (int, float) or not -1.0 <= value <= 1.0:
+            raise _DamageError(f"{str(value)[:40]} is not a value in [-1, 1]")
+    return RewardMap(meaning, MappingProxyType(environment), named, tuple(map(float, values)))
+
+
+def _checked_state(value: Any) -> State:
+    if type(value) is int and value >= 0:
+        return value
+    if isinstance(value, list) and len(value) == 2 and all(type(x) is int and x >= 0 for x in value):
+        return (value[0], value[1])
+    raise _DamageError(f"{str(value)[:40]} is not a state: a number or [row, col]")

@@ -2,7 +2,7 @@
 
 In: a compiled spec and demonstrations. Out: a `Ranking`: label, reward r_d and rank of every demonstration,
 robustness, verdict and witness of every requirement. Labels go by verdicts, never by the sign of a
-robustness; a robustness is bounded before it is weighed, so that no requirement drowns the others by its unit.
+robustness; a robustness is bounded before it is weighed, so that no requirement drowns the others.
 """
 
 import math
@@ -12,11 +12,10 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement
-from stlspec.demos import BoundDemonstration, Demonstration, bind
+from stlspec.demos import BoundDemonstration, Demonstration, OnNan, bind
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, diagnostic
-from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict, evaluate
-from stlspec.semantics.witness import reason
+from stlspec.semantics.evaluation import End, Evaluation, RequirementResult, Verdict, evaluate
 
 Label = Literal["good", "incomplete", "bad"]
 LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
@@ -24,6 +23,9 @@ LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
 
 SAME_REWARD = 1e-9
 """Rewards of one label that differ by no more than this from the group's first share a rank."""
+
+LARGEST_TERM = 1e100
+"""A bounded robustness beyond this is refused like an infinite one: sums of such terms could overflow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +61,12 @@ class Ranking:
     """The scores of all demonstrations, in the order in which they were given.
 
     requirements: name, strength, weight (softmax) and raw weight of each. at: the sample asked about, None =
-    the demonstrations as a whole. enclosed: whether each robustness comes with an enclosure.
+    the demonstrations as a whole.
     """
 
     requirements: tuple[tuple[str, str, float, int], ...]
     demonstrations: tuple[DemonstrationScore, ...]
     at: int | None = None
-    enclosed: bool = False
 
     def to_json(self) -> dict[str, Any]:
         """Return the `stlspec.score/1` document."""
@@ -86,11 +87,9 @@ class Ranking:
 
     def _requirement(self, score: RequirementScore) -> dict[str, Any]:
         result = score.result
-        enclosure = {"low": number(result.low), "high": number(result.high)} if self.enclosed else {}
         witness = result.witness
         return {
             "robustness": number(result.robustness),
-            **enclosure,
             "bounded": score.bounded,
             "verdict": result.verdict.value,
             "vacuous": result.vacuous,
@@ -169,18 +168,19 @@ def evaluate_demonstrations(
     demonstrations: Iterable[Demonstration],
     environment: Environment | None = None,
     *,
-    end: str = "clip",
+    end: End = "clip",
     at: int = 0,
-    on_nan: str = "refuse",
-) -> list[tuple[BoundDemonstration, Evaluation]]:
+    on_nan: OnNan = "refuse",
+) -> list[tuple[BoundDemonstration, Evaluation[RequirementResult]]]:
     """Find the signals of each demonstration, and evaluate all requirements over them.
 
     Paper: Algorithm 1, lines 4 to 6 (rob_i^j). Arguments as for `score`.
     """
     evaluated = []
     for demonstration in demonstrations:
-        bound = bind(bundle, demonstration, environment)
-        result = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
+        bound = bind(bundle, demonstration, environment, on_nan)
+        file = demonstration.file or demonstration.name
+        result = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=file)
         evaluated.append((bound, result))
     return evaluated
 
@@ -190,9 +190,9 @@ def score(
     demonstrations: Iterable[Demonstration],
     environment: Environment | None = None,
     *,
-    end: str = "clip",
+    end: End = "clip",
     at: int | None = None,
-    on_nan: str = "refuse",
+    on_nan: OnNan = "refuse",
 ) -> Ranking:
     """Score and rank demonstrations.
 
@@ -200,7 +200,7 @@ def score(
 
     Args:    bundle: the compiled spec. demonstrations: as `load_demonstrations` gives them.
              environment: computes missing signals from states, for demonstrations that name none.
-             end: "clip", "strict" or "interval". at: ask about this sample instead of the whole; negative
+             end: "clip" or "strict". at: ask about this sample instead of the whole; negative
              counts from the end. on_nan: "refuse", "hold" or "drop".
     Returns: the ranking, in the order of the demonstrations.
     Raises:  DataError: signals are missing or unusable; D860: an infinite robustness under `bound none`.
@@ -208,22 +208,21 @@ def score(
     evaluated = evaluate_demonstrations(
         bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan
     )
-    return rank_demonstrations(bundle, evaluated, at=at, enclosed=end == "interval")
+    return rank_demonstrations(bundle, evaluated, at=at)
 
 
 def rank_demonstrations(
     bundle: BundleData,
-    evaluated: Sequence[tuple[BoundDemonstration, Evaluation]],
+    evaluated: Sequence[tuple[BoundDemonstration, Evaluation[RequirementResult]]],
     *,
     at: int | None = None,
-    enclosed: bool = False,
 ) -> Ranking:
     """Bound, weigh, label and rank what `evaluate_demonstrations` found.
 
     Paper: Algorithm 1, lines 6, 7 and 12; equation (2). Arguments and errors as for `score`.
     """
     scores = [
-        {r.name: _requirement_score(bundle, r, bound.name, result[r.name]) for r in bundle.requirements}
+        {r.name: _requirement_score(r, bound.name, result[r.name]) for r in bundle.requirements}
         for bound, result in evaluated
     ]
     labels = [None if at is not None else _label(bundle, row) for row in scores]
@@ -238,7 +237,7 @@ def rank_demonstrations(
         (r.name, r.strength, weight, raw)
         for r, weight, raw in zip(bundle.requirements, bundle.weights, bundle.raw_weights, strict=True)
     )
-    return Ranking(requirements, tuple(demonstrations), at, enclosed)
+    return Ranking(requirements, tuple(demonstrations), at)
 
 
 def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label | None:
@@ -250,14 +249,25 @@ def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label 
 
 
 def _requirement_score(
-    bundle: BundleData, requirement: Requirement, demonstration: str, result: RequirementResult
+    requirement: Requirement, demonstration: str, result: RequirementResult
 ) -> RequirementScore:
+    """Bound one robustness; a vacuous requirement says nothing about the demonstration, and counts 0."""
+    reason = failure(requirement.name, result)
     if result.vacuous:
-        return RequirementScore(0.0, result, reason(bundle, requirement, result))
-    if requirement.bound == "none" and math.isinf(result.robustness):
-        value = number(result.robustness)
-        raise DataError(
-            [diagnostic("D860", file=demonstration, requirement=requirement.name, value=value)]
-        )
+        return RequirementScore(0.0, result, reason)
     bounded = bounded_robustness(result.robustness, requirement.bound, requirement.scale)
-    return RequirementScore(bounded, result, reason(bundle, requirement, result))
+    if abs(bounded) > LARGEST_TERM:
+        value = number(result.robustness)
+        raise DataError([diagnostic("D860", file=demonstration, requirement=requirement.name, value=value)])
+    return RequirementScore(bounded, result, reason)
+
+
+def failure(name: str, result: RequirementResult) -> str:
+    """Say why and when a requirement fails, such as "avoid fails at sample 3: d_obs = 0, needs >= 1".
+
+    Not in the paper: the report. Returns: one line; "" if the requirement does not fail.
+    """
+    if result.verdict is not Verdict.VIOLATED:
+        return ""
+    at = "" if result.witness is None else f" at sample {result.witness.sample}"
+    return f"{name} fails{at}: {result.reason}"

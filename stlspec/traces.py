@@ -119,7 +119,7 @@ def make_trace(
     trace = Trace(
         times=_frozen(times),
         signals=MappingProxyType({name: _frozen(column) for name, column in columns.items()}),
-        spacing=_spacing(base, times),
+        spacing=_spacing(base, times, stamps),
         ticks_per_unit=base.ticks_per_unit,
         unit=base.unit,
         stamps=None if stamps is None else _frozen(stamps),
@@ -146,9 +146,7 @@ def _missing(name: str, signals: Mapping[str, ArrayLike], file: str | None) -> D
     return _error("D804", file, signal=name, help=f'{hint} (`from "{close[0]}"` reads it)' if close else hint)
 
 
-def _column(
-    name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()
-) -> Floats:
+def _column(name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()) -> Floats:
     """Convert the values of one signal to a fresh float64 array, time-major."""
     try:
         raw = np.asarray(values)
@@ -237,12 +235,10 @@ def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
     if time is None:
         if base.kind == "stamps":
             raise _error("D810", file, unit=base.unit)
-        return index * (base.period or 1), None
+        return index if base.period is None else index * base.period, None
     stamps = _column("time", time, file)
     if stamps.ndim != 1:
-        raise _error(
-            "D813", file, what="'time'", problem="has one row for each trace, but the signals do not"
-        )
+        raise _error("D813", file, what="'time'", problem="has one row for each trace, but the signals do not")
     if len(stamps) != n:
         raise _error("D805", file, signal="time", length=len(stamps), other="signals", expected=n)
     with np.errstate(all="ignore"):
@@ -284,9 +280,9 @@ def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None) 
     return whole.astype(np.int64) * period
 
 
-def _spacing(base: TimeBase, times: Ints) -> int | None:
-    if len(times) == 1:
-        return base.period or base.ticks_per_unit
+def _spacing(base: TimeBase, times: Ints, stamps: Floats | None) -> int | None:
+    if stamps is None or len(times) == 1:
+        return base.period or 1
     steps = np.diff(times)
     return int(steps[0]) if (steps == steps[0]).all() else None
 

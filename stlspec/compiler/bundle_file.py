@@ -59,13 +59,11 @@ def _meaning(bundle: BundleData) -> Json:
     return {
         "time": [time.kind, time.unit, time.ticks_per_unit, time.period],
         "signals": sorted(
-            [s.name, s.type, s.unit or "", _optional(s.low), _optional(s.high), s.source or ""]
-            for s in bundle.signals
+            [s.name, s.type, s.unit or "", _optional(s.low), _optional(s.high), s.source or ""] for s in bundle.signals
         ),
         "params": sorted([p.name, number(p.value), p.unit or ""] for p in bundle.params),
         "requirements": [
-            [r.name, r.strength, number(r.scale), r.bound, r.root, sorted(r.depends_on)]
-            for r in bundle.requirements
+            [r.name, r.strength, number(r.scale), r.bound, r.root, sorted(r.depends_on)] for r in bundle.requirements
         ],
         "nodes": [_node(node) for node in bundle.nodes],
         "weights": list(bundle.raw_weights),
@@ -114,9 +112,7 @@ def dump(bundle: BundleData) -> bytes:
             }
             for s in bundle.signals
         ],
-        "params": [
-            {"name": p.name, "value": number(p.value), "unit": p.unit, "doc": p.doc} for p in bundle.params
-        ],
+        "params": [{"name": p.name, "value": number(p.value), "unit": p.unit, "doc": p.doc} for p in bundle.params],
         "requirements": [
             {
                 "name": r.name,

@@ -7,6 +7,7 @@ root cause is reported once: names that broken statements declare are known, and
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 
 from stlspec.compiler.bundle import Signal
 from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
@@ -55,9 +56,7 @@ def check(syntax: Syntax, values: Mapping[str, float] | None = None) -> tuple[Mo
         _clauses(syntax.source, requirement, problems)
     _graph(syntax, declared, problems)
     let_typings = {name: inference.scope[name] for name in order}
-    model = Model(
-        syntax.source, declared, signals, bound, order, let_typings, inference.typings, inference.intervals
-    )
+    model = Model(syntax.source, declared, signals, bound, order, let_typings, inference.typings, inference.intervals)
     return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
 
 
@@ -148,7 +147,7 @@ def _range_of(
 def _lets(inference: Inference) -> tuple[str, ...]:
     """Type the lets, each after those that it uses, and put them into scope."""
     lets = inference.declared.lets
-    uses = {name: [n for n in _names_in(let.body) if n in lets] for name, let in lets.items()}
+    uses = {name: [n for n in names_in(let.body) if n in lets] for name, let in lets.items()}
     try:
         order = tuple(TopologicalSorter(uses).static_order())
     except CycleError as error:
@@ -179,8 +178,7 @@ def _template(inference: Inference, let: LetStatement) -> Typing:
 def _report_circle(inference: Inference, circle: list[str]) -> None:
     places = inference.declared.places
     labels = tuple(
-        Label(places[name], f"`{name}` uses `{used}`", inference.source)
-        for name, used in zip(circle[1:], circle[2:], strict=False)
+        Label(places[name], f"`{name}` uses `{used}`", inference.source) for name, used in pairwise(circle[1:])
     )
     inference.problems.append(
         diagnostic(
@@ -194,7 +192,7 @@ def _report_circle(inference: Inference, circle: list[str]) -> None:
     )
 
 
-def _names_in(root: Expression) -> Iterable[str]:
+def names_in(root: Expression) -> Iterable[str]:
     """Yield the names that an expression uses, in its intervals too."""
     pending = [root]
     while pending:
@@ -220,9 +218,7 @@ def _clauses(source: SourceText, requirement: RequirementStatement, problems: li
     scale, bound = requirement.scale, requirement.bound
     if scale is not None and not 0 < scale.value < float("inf"):
         what = f"a scale of {scale.value:g} does not scale"
-        problems.append(
-            diagnostic("T205", source=source, span=scale.span, what=what, help="write a positive number")
-        )
+        problems.append(diagnostic("T205", source=source, span=scale.span, what=what, help="write a positive number"))
     if bound is not None and bound.text not in BOUNDINGS:
         problems.append(_choice(source, bound, "a way to bound robustness", BOUNDINGS))
 
@@ -249,9 +245,7 @@ def _graph(syntax: Syntax, declared: Declared, problems: list[Diagnostic]) -> No
         _weights(syntax.source, declared, edges, problems)
 
 
-def _edge(
-    syntax: Syntax, declared: Declared, requirement: RequirementStatement, on: Name
-) -> Diagnostic | None:
+def _edge(syntax: Syntax, declared: Declared, requirement: RequirementStatement, on: Name) -> Diagnostic | None:
     source, name = syntax.source, requirement.name.text
     if on.text == name:
         return diagnostic("G503", source=source, span=on.span, name=name)
@@ -273,7 +267,7 @@ def _circle(source: SourceText, declared: Declared, circle: list[str]) -> Diagno
         names = declared.requirements[name].depends_on
         return next(n.span for n in names if n.text == on)
 
-    edges = list(zip(circle, circle[1:], strict=False))
+    edges = list(pairwise(circle))
     labels = tuple(Label(place(a, b), f"`{a}` depends on `{b}`", source) for a, b in edges[1:])
     first = f"`{edges[0][0]}` depends on `{edges[0][1]}`"
     return diagnostic(

@@ -82,9 +82,7 @@ def _bind(model: Model, params: Mapping[str, float | str]) -> dict[str, float]:
         value = _value(given, unit)
         if isinstance(value, str):
             shown = str(given)[:30]
-            problems.append(
-                diagnostic("N108", file=model.source.name, name=name, value=shown, problem=value)
-            )
+            problems.append(diagnostic("N108", file=model.source.name, name=name, value=shown, problem=value))
         else:
             values[name] = value
     if problems:

@@ -5,13 +5,15 @@ each root cause: what is reported is "broken", and whatever holds it stays silen
 one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always (d > 1)` and `d + 2`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
+from itertools import pairwise
+from typing import Any
 
 from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.intervals import ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
-from stlspec.compiler.quantities import Quantities
+from stlspec.compiler.quantities import Quantities, Unit
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.hints import OPERATOR_WORDS
 from stlspec.lang.nodes import (
@@ -30,7 +32,7 @@ from stlspec.lang.nodes import (
     children,
     post_order,
 )
-from stlspec.lang.units import SPELLINGS, Dimension, dimension
+from stlspec.lang.units import SPELLINGS, dimension
 from stlspec.source import SourceText, Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
@@ -66,7 +68,7 @@ class Inference:
         self.intervals: dict[int, tuple[int, int | None]] = {}
         self.quantities = Quantities(self._report)
 
-    def _report(self, code: str, span: Span, labels: tuple[Label, ...] = (), **fields: object) -> Typing:
+    def _report(self, code: str, span: Span, labels: tuple[Label, ...] = (), **fields: Any) -> Typing:
         self.problems.append(diagnostic(code, source=self.source, span=span, labels=labels, **fields))
         return BROKEN
 
@@ -159,10 +161,8 @@ class Inference:
             wanted = f"{least} or more" if most is None else str(least)
             usage = f"`{name}({', '.join('xyz'[:least])})`"
             plural = "argument" if wanted == "1" else "arguments"
-            return self._report(
-                "T203", node.span, name=name, wanted=f"{wanted} {plural}", given=given, usage=usage
-            )
-        if not all([self._need_real(a, f"{name}(...)") for a in node.arguments]):
+            return self._report("T203", node.span, name=name, wanted=f"{wanted} {plural}", given=given, usage=usage)
+        if not self._all_real(node.arguments, f"{name}(...)"):
             return BROKEN
         unit = self.quantities.of_call(name, list(zip(node.arguments, below, strict=True)), self.declared.time)
         return self._folded(name, below, unit, node.span) if unit is not BROKEN else BROKEN
@@ -210,16 +210,16 @@ class Inference:
         if len(node.operators) > 1 and not (words <= {"lt", "le"} or words <= {"gt", "ge"}):
             return self._report("S022", node.operators[1].span)
         sign = self.source.slice(node.operators[0].span)
-        if not all([self._need_real(operand, sign) for operand in node.operands]):
+        if not self._all_real(node.operands, sign):
             return BROKEN
         pairs = list(zip(node.operands, below, strict=True))
-        for left, right in zip(pairs, pairs[1:], strict=False):
+        for left, right in pairwise(pairs):
             if self.quantities.joined([left, right], "compared") is BROKEN:
                 return BROKEN
         return FORMULA
 
     def _arithmetic(self, node: Infix, below: list[Typing]) -> Typing:
-        if not all([self._need_real(operand, "arithmetic") for operand in node.operands]):
+        if not self._all_real(node.operands, "arithmetic"):
             return BROKEN
         words = [operator.word for operator in node.operators]
         unit = self.quantities.of_operators(words, list(zip(node.operands, below, strict=True)))
@@ -230,9 +230,7 @@ class Inference:
             typing = self._folded(word, [typing, right], unit, node.span)
         return typing
 
-    def _folded(
-        self, op: str, operands: list[Typing], unit: Dimension | None | Typing, span: Span
-    ) -> Typing:
+    def _folded(self, op: str, operands: list[Typing], unit: Unit, span: Span) -> Typing:
         """Type the result of real operands: constant if they are, with its value if all values are known."""
         assert not isinstance(unit, Typing)
         if not all(t.constant for t in operands) or op not in FOLDABLE:
@@ -244,6 +242,10 @@ class Inference:
         if value != value:
             return self._report("T207", span, text=_short(self.source.slice(span)))
         return Typing("real", unit, True, value)
+
+    def _all_real(self, nodes: Sequence[Expression], what: str) -> bool:
+        """Check every operand, so that each wrong one is reported."""
+        return [self._need_real(node, what) for node in nodes].count(False) == 0
 
     def _need_real(self, node: Expression, what: str) -> bool:
         kind = self.typings[id(node)].kind
@@ -288,9 +290,7 @@ class Inference:
             return BROKEN
         if typing.constant:
             return typing
-        culprit = next(
-            n for n in post_order(node) if not children(n) and not self.typings[id(n)].constant
-        )
+        culprit = next(n for n in post_order(node) if not children(n) and not self.typings[id(n)].constant)
         return self._report("T204", node.span, what=what, name=self.source.slice(culprit.span))
 
     def range_of(self, interval: Interval, unit: Mapping[str, int]) -> tuple[float, float] | None:

@@ -5,6 +5,8 @@ diagnostic. Bounds are rounded to the nearest tick once, here; all window arithm
 """
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
@@ -15,6 +17,7 @@ from stlspec.source import SourceText, Span
 
 _LARGEST = 2**62
 Ticks = tuple[int, int | None]
+Report = Callable[..., None]
 
 
 def ticks_of(
@@ -27,7 +30,7 @@ def ticks_of(
     """Return the interval in ticks; None if a param is not bound yet or something was reported."""
     before = len(problems)
 
-    def report(code: str, span: Span, **fields: object) -> None:
+    def report(code: str, span: Span, **fields: Any) -> None:
         problems.append(diagnostic(code, source=source, span=span, **fields))
 
     for node, bound in zip((interval.low, interval.high), bounds, strict=True):
@@ -49,13 +52,17 @@ def _in_ticks(bound: Typing, time: TimeBase) -> float:
     return bound.value * (NANOSECONDS[word] if word in NANOSECONDS and time.kind != "step" else 1)
 
 
-def _check_unit(bound: Typing, span: Span, text: str, time: TimeBase, report) -> None:  # type: ignore[no-untyped-def]
+def _check_unit(bound: Typing, span: Span, text: str, time: TimeBase, report: Report) -> None:
     """Refuse a bound in the wrong unit, or one without a unit where the spec has one."""
     if bound.unit is None:
         if time.kind == "step" or bound.value is None or bound.value in (0, math.inf):
             return
         simple = text.replace(".", "", 1).isdigit()
-        way = f"write `{text} {time.unit}`" if simple else f"give the numbers and params in it a unit, such as {time.unit}"
+        way = (
+            f"write `{text} {time.unit}`"
+            if simple
+            else f"give the numbers and params in it a unit, such as {time.unit}"
+        )
         report("U303", span, unit=time.unit, help=way)
         return
     shown = f"`{spell(bound.unit)}`" if bound.unit else "a plain number"
@@ -79,7 +86,7 @@ def _check_unit(bound: Typing, span: Span, text: str, time: TimeBase, report) ->
         )
 
 
-def _check_order(low: float, high: float, span: Span, texts: list[str], spans: list[Span], report) -> None:  # type: ignore[no-untyped-def]
+def _check_order(low: float, high: float, span: Span, texts: list[str], spans: list[Span], report: Report) -> None:
     for value, text, place in zip((low, high), texts, spans, strict=True):
         if value < 0:
             way = "to look back, use `historically`, `once` or `since` with bounds from 0"

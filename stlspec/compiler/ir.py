@@ -17,9 +17,7 @@ FUTURE = frozenset({"always", "eventually", "until", "next"})
 PAST = frozenset({"historically", "once", "since", "prev"})
 BOUNDED = frozenset({"always", "eventually", "until", "historically", "once", "since"})
 TEMPORAL = FUTURE | PAST
-REAL = frozenset(
-    "const signal now neg add sub mul div pow abs min max sqrt exp log sin cos hypot delta rate".split()
-)
+REAL = frozenset(("const signal now neg add sub mul div pow abs min max sqrt exp log sin cos hypot delta rate").split())
 LOGIC = frozenset({"true", "false", "bool", "not", "and", "or"}) | COMPARISONS.keys() | TEMPORAL
 OPERATORS = REAL | LOGIC
 

@@ -7,7 +7,7 @@ and every expression bottom-up, so that neither a deep formula nor a chain of a 
 from collections.abc import Sequence
 from types import MappingProxyType
 
-from stlspec.compiler.bundle import BundleData, Bounding, Param, Requirement, Strength
+from stlspec.compiler.bundle import Bounding, BundleData, Param, Requirement, Strength
 from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.dependencies import ancestors, dependency_weights, softmax
 from stlspec.compiler.horizon import horizons
@@ -79,9 +79,7 @@ def _params(model: Model) -> tuple[Param, ...]:
     )
 
 
-def _requirement(
-    model: Model, statement: RequirementStatement, root: int, horizon: int | None
-) -> Requirement:
+def _requirement(model: Model, statement: RequirementStatement, root: int, horizon: int | None) -> Requirement:
     strength: Strength = "hard" if statement.strength == "hard" else "soft"
     bounds: dict[str, Bounding] = {"linear": "linear", "none": "none"}
     return Requirement(

@@ -44,9 +44,7 @@ def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
         name = statement.name
         if name.text in places:
             first = Label(places[name.text], "first declared here", syntax.source)
-            problems.append(
-                diagnostic("N102", source=syntax.source, span=name.span, labels=(first,), name=name.text)
-            )
+            problems.append(diagnostic("N102", source=syntax.source, span=name.span, labels=(first,), name=name.text))
             continue
         places[name.text] = name.span
         tables[type(statement)][name.text] = statement
@@ -67,33 +65,23 @@ def _header(syntax: Syntax, problems: list[Diagnostic]) -> SpecStatement | None:
     found = [s for s in syntax.statements if isinstance(s, SpecStatement)]
     for i, statement in enumerate(syntax.statements):
         if isinstance(statement, SpecStatement) and i:
-            once = statement is not found[0]
-            problems.append(
-                diagnostic(
-                    "S014",
-                    source=syntax.source,
-                    span=statement.span,
-                    word="spec",
-                    problem="is given twice" if once else "stands after other statements",
-                    help="keep one of the two" if once else "move it to the top of the file",
-                )
-            )
+            if statement is not found[0]:
+                problems.append(_misplaced(syntax, statement, "spec", "is given twice", "keep one of the two"))
+            else:
+                after, way = "stands after other statements", "move it to the top of the file"
+                problems.append(_misplaced(syntax, statement, "spec", after, way))
     return found[0] if found else None
+
+
+def _misplaced(
+    syntax: Syntax, statement: SpecStatement | TimeStatement, word: str, problem: str, way: str
+) -> Diagnostic:
+    return diagnostic("S014", source=syntax.source, span=statement.span, word=word, problem=problem, help=way)
 
 
 def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase:
     found = [s for s in syntax.statements if isinstance(s, TimeStatement)]
-    for extra in found[1:]:
-        problems.append(
-            diagnostic(
-                "S014",
-                source=syntax.source,
-                span=extra.span,
-                word="time",
-                problem="is given twice",
-                help="keep one of the two",
-            )
-        )
+    problems += [_misplaced(syntax, s, "time", "is given twice", "keep one of the two") for s in found[1:]]
     if not found:
         return TimeBase("step", STEP, 1)
     return _time_base(syntax, found[0], problems)
@@ -108,9 +96,7 @@ def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnost
     if unit not in NANOSECONDS:
         allowed: Sequence[str] = (STEP, *TIME_UNITS) if number is None else TIME_UNITS
         problems.append(
-            diagnostic(
-                "U305", source=syntax.source, span=statement.unit.span, unit=unit, units=", ".join(allowed)
-            )
+            diagnostic("U305", source=syntax.source, span=statement.unit.span, unit=unit, units=", ".join(allowed))
         )
         return step
     ticks = NANOSECONDS[unit]

@@ -7,12 +7,12 @@ None (a literal, a param without a unit) takes the unit of the other side; times
 from collections.abc import Callable, Mapping, Sequence
 
 from stlspec.compiler.bundle import TimeBase
-from stlspec.compiler.model import BROKEN, Typing
+from stlspec.compiler.model import Typing
 from stlspec.lang.nodes import Expression, Number, Prefix
 from stlspec.lang.units import KNOWN, NANOSECONDS, Dimension, spell
 
 Operand = tuple[Expression, Typing]
-Unit = Dimension | None | Typing
+Unit = Dimension | Typing | None
 """A dimension, None for "any", or BROKEN."""
 
 
@@ -45,7 +45,7 @@ class Quantities:
         self._report = report
         self.known: set[str] = set(KNOWN)
 
-    def value_in(self, typing: Typing, unit: Dimension | None | Typing) -> float | None:
+    def value_in(self, typing: Typing, unit: Unit) -> float | None:
         """Return a constant's value in `unit`; None if it is not known."""
         if typing.value is None or isinstance(unit, Typing):
             return None
@@ -125,6 +125,3 @@ class Quantities:
             what = f"the square root of a value in {_shown(unit)} has no unit"
             return self._report("U306", operand[0].span, what=what, help="divide by the unit first")
         return {part: power // 2 for part, power in unit.items()}
-
-
-__all__ = ["BROKEN", "Quantities", "Unit", "conversion"]

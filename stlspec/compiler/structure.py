@@ -13,12 +13,12 @@ from stlspec.compiler.ir import BOUNDED, COMPARISONS, LOGIC, OPERATORS, REAL, No
 
 _LARGEST_TICK = 2**62
 _ARITY = {
-    **dict.fromkeys("const signal now true false bool".split(), (0, 0)),
-    **dict.fromkeys("neg abs sqrt exp log sin cos delta rate not next prev".split(), (1, 1)),
-    **dict.fromkeys("always eventually historically once".split(), (1, 1)),
-    **dict.fromkeys("sub div pow hypot until since".split(), (2, 2)),
+    **dict.fromkeys(["const", "signal", "now", "true", "false", "bool"], (0, 0)),
+    **dict.fromkeys(("neg abs sqrt exp log sin cos delta rate not next prev").split(), (1, 1)),
+    **dict.fromkeys(["always", "eventually", "historically", "once"], (1, 1)),
+    **dict.fromkeys(["sub", "div", "pow", "hypot", "until", "since"], (2, 2)),
     **dict.fromkeys(COMPARISONS, (2, 2)),
-    **dict.fromkeys("add mul min max and or".split(), (2, None)),
+    **dict.fromkeys(["add", "mul", "min", "max", "and", "or"], (2, None)),
 }
 
 

@@ -135,9 +135,7 @@ def _misdescribed(description: Any) -> str:
     args, rows = description.get("args"), description.get("map")
     if args is not None and not isinstance(args, Mapping):
         return "its 'args' should be an object"
-    if rows is not None and not (
-        isinstance(rows, list | tuple) and all(isinstance(row, str) for row in rows)
-    ):
+    if rows is not None and not (isinstance(rows, list | tuple) and all(isinstance(row, str) for row in rows)):
         return "its 'map' should be a list of rows of text"
     return ""
 

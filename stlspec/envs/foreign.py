@@ -16,9 +16,7 @@ from stlspec.envs.model import Environment
 from stlspec.errors import UsageError, diagnostic
 
 
-def environment(
-    env_id: str, args: Mapping[str, Any], rows: Sequence[str] | None, ids: Sequence[str]
-) -> Environment:
+def environment(env_id: str, args: Mapping[str, Any], rows: Sequence[str] | None, ids: Sequence[str]) -> Environment:
     """Describe a registered gymnasium environment whose states are raw observations.
 
     Not in the paper: it stands for everything beyond the paper's environments.

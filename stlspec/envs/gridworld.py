@@ -46,9 +46,7 @@ class GridWorld(gymnasium.Env[Any, Any]):
         self._next = four_moves(self.grid)
         self._cell = self.grid.start
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[int, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
         """Go back to the start; see `gymnasium.Env.reset`."""
         super().reset(seed=seed, options=options)
         self._cell = self.grid.start

@@ -22,16 +22,21 @@ _STEPS = ((0, -1), (1, 0), (0, 1), (-1, 0))
 
 @dataclass(frozen=True, slots=True)
 class Letters:
-    """What the characters of a map mean in one environment; `described` is shown when one is unknown."""
+    """What the characters of a map mean in one environment; `described` is shown when one is unknown.
+
+    cells_at_most: the size of the largest map of this environment.
+    """
 
     obstacle: str
     free: str
     numbered: bool
     described: str
+    cells_at_most: int
 
 
-GRIDWORLD = Letters("#", ".", True, "S start, . free, # obstacle, G goal, 1 to 9 goals, a to z regions")
-FROZENLAKE = Letters("H", "F", False, "S start, F frozen, H hole, G goal")
+GRIDWORLD = Letters("#", ".", True, "S start, . free, # obstacle, G goal, 1 to 9 goals, a to z regions", CELLS_AT_MOST)
+# gymnasium builds its table of a frozen lake from Python objects, some 4 kB a cell.
+FROZENLAKE = Letters("H", "F", False, "S start, F frozen, H hole, G goal", 100_000)
 
 
 def read_map(path: Path | str) -> tuple[str, ...]:
@@ -46,18 +51,14 @@ def read_map(path: Path | str) -> tuple[str, ...]:
     try:
         if not file.is_file():
             reason = "it is a directory" if file.is_dir() else "there is no such file"
-            raise DataError(
-                [diagnostic("D830", file=name, reason=reason, help="give the name of a map file")]
-            )
+            raise DataError([diagnostic("D830", file=name, reason=reason, help="give the name of a map file")])
         with file.open("rb") as stream:
             data = stream.read(_BYTES_AT_MOST + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise DataError(
-            [diagnostic("D830", file=name, reason=reason, help="check its permissions")]
-        ) from None
+        raise DataError([diagnostic("D830", file=name, reason=reason, help="check its permissions")]) from None
     if len(data) > _BYTES_AT_MOST:
-        raise DataError([_bad_size("is larger than any map", name)])
+        raise DataError([_bad_size("is larger than any map", CELLS_AT_MOST, name)])
     text = _text(data, name)
     rows = tuple(line.rstrip() for line in text.removeprefix("\ufeff").rstrip().splitlines())
     if not rows:
@@ -74,12 +75,16 @@ def parse_map(rows: Sequence[str], letters: Letters, *, file: str | None = None)
 
     Raises: DataError D823 to D826: all mistakes of the map, each with row and column from 1.
     """
-    if not rows or not rows[0]:
-        raise DataError([_bad_size("is empty", file)])
-    if sum(map(len, rows)) > CELLS_AT_MOST:
-        raise DataError([_bad_size(f"has {sum(map(len, rows)):,} cells", file)])
+    n_cells = sum(map(len, rows))
+    if not n_cells:
+        raise DataError([_bad_size("is empty", letters.cells_at_most, file)])
+    if n_cells > letters.cells_at_most:
+        raise DataError([_bad_size(f"has {n_cells:,} cells", letters.cells_at_most, file)])
+    ragged = _ragged(rows, file)
+    if ragged:
+        raise DataError(ragged)
     places = _places(rows)
-    problems = [*_ragged(rows, file), *_strange(places, len(rows[0]), letters, file)]
+    problems = _strange(places, len(rows[0]), letters, file)
     starts = len(places.get("S", ()))
     if starts != 1:
         problems.append(diagnostic("D825", file=file, count="no start" if not starts else f"{starts} starts"))
@@ -104,8 +109,7 @@ def four_moves(grid: Grid) -> npt.NDArray[np.int64]:
     """
     rows, columns = np.divmod(np.arange(grid.n_cells, dtype=np.int64), grid.n_columns)
     moves = [
-        np.clip(rows + down, 0, grid.n_rows - 1) * grid.n_columns
-        + np.clip(columns + right, 0, grid.n_columns - 1)
+        np.clip(rows + down, 0, grid.n_rows - 1) * grid.n_columns + np.clip(columns + right, 0, grid.n_columns - 1)
         for down, right in _STEPS
     ]
     return np.stack(moves, axis=1)
@@ -121,12 +125,12 @@ def _text(data: bytes, name: str) -> str:
         raise DataError([diagnostic("D832", file=name, offset=at, line=line, byte=byte)]) from None
 
 
-def _bad_size(what: str, file: str | None) -> Diagnostic:
-    return diagnostic("D826", file=file, what=what, limit=f"{CELLS_AT_MOST:,}")
+def _bad_size(what: str, limit: int, file: str | None) -> Diagnostic:
+    return diagnostic("D826", file=file, what=what, limit=f"{limit:,}")
 
 
 def _places(rows: Sequence[str]) -> dict[str, tuple[int, ...]]:
-    """Find the cells of each character, in reading order (as if the map were a rectangle)."""
+    """Find the cells of each character, in reading order."""
     found: dict[str, list[int]] = {}
     for row, text in enumerate(rows):
         for column, character in enumerate(text):

@@ -77,9 +77,7 @@ def field(grid: Grid, name: str) -> npt.NDArray[Any]:
     return values
 
 
-def grid_signals(
-    grid: Grid, names: Sequence[str], cells: npt.NDArray[np.int64]
-) -> dict[str, npt.NDArray[Any]]:
+def grid_signals(grid: Grid, names: Sequence[str], cells: npt.NDArray[np.int64]) -> dict[str, npt.NDArray[Any]]:
     """Compute signals along a sequence of cells.
 
     Args:    names: some of `signal_names(grid)`. cells: (n_samples,), numbers of cells of the grid.

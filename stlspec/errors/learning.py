@@ -9,8 +9,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="'{requirement}' has robustness {value}, which `bound none` does not bound",
         help="write `bound tanh` or `bound linear` in the header of '{requirement}'",
-        explanation="The reward of a demonstration is a weighted sum. One infinite term would hide all others, "
-        "and two of opposite sign have no sum.",
+        explanation="The reward of a demonstration is a weighted sum. One infinite term would hide all "
+        "others, and two of opposite sign have no sum.",
         bad="# soft reach bound none: eventually (d_goal < 1)   with d_goal = inf\n",
         good="# soft reach bound tanh: eventually (d_goal < 1)\n",
         kind="shown",
@@ -20,7 +20,7 @@ CODES: tuple[Code, ...] = (
         "a demonstration without states",
         "error",
         message="demonstration '{name}' has no states, and rewards are values of states",
-        help="add \"states\" to the demonstration (JSON, NPZ or Minari), or the columns 'row' and 'col' (CSV)",
+        help="add 'states' to the demonstration (JSON, NPZ), or the columns 'row' and 'col' (CSV)",
         explanation="Algorithm 1 gives a value to every state that a demonstration visits. Signals alone are "
         "enough to score a demonstration, but not to learn from it.",
         bad='{"schema": "stlspec.demo/1", "signals": {"d_obs": [1, 2]}}',
@@ -57,7 +57,7 @@ CODES: tuple[Code, ...] = (
         "a reward that is 0 everywhere",
         "warning",
         message="the inferred reward is 0 in every state{reason}",
-        help="add a demonstration that meets the hard requirements; without one, learning goes on without shaping",
+        help="add a demonstration that meets the hard requirements; learning goes on without shaping",
         explanation="States get a positive value only from demonstrations that meet every hard requirement. "
         "With none of them the potential is 0, and the learner falls back on the base reward.",
         bad="# stlspec learn grid.stl --env stlspec/GridWorld-v0 --demos incomplete.json --out out\n",
@@ -71,8 +71,8 @@ CODES: tuple[Code, ...] = (
         message="the reward map was inferred from a spec with another meaning",
         help="harmless if only a param such as T_goal differs; else infer it again: "
         "stlspec reward SPEC DEMO... -o R.json",
-        explanation="A reward map carries the hash of the meaning of the spec that ranked the demonstrations. "
-        "Shaping never changes which policies are optimal, so learning goes on.",
+        explanation="A reward map carries the hash of the meaning of the spec that ranked the "
+        "demonstrations. Shaping never changes which policies are optimal, so learning goes on.",
         bad="# stlspec reward a.stl demos/*.json -o R.json; stlspec learn b.stl --reward R.json ...\n",
         good="# stlspec reward a.stl demos/*.json -o R.json; stlspec learn a.stl --reward R.json ...\n",
         kind="shown",
@@ -81,8 +81,8 @@ CODES: tuple[Code, ...] = (
         "D866",
         "a spec without a goal",
         "error",
-        message="there is no goal to learn: no requirement has an `eventually` over a condition on the present "
-        "sample",
+        message="there is no goal to learn: no requirement has an `eventually` over a condition on the "
+        "present sample",
         help="say where to get to, for example: soft reach: eventually (d_goal < 1)",
         explanation="An episode of training ends at a goal. Goals are the conditions on the present sample "
         "(no temporal operator, delta, rate or now) under an `eventually` of any requirement.",
@@ -107,7 +107,8 @@ CODES: tuple[Code, ...] = (
         "D868",
         "a hard requirement that the learner cannot watch step by step",
         "error",
-        message="hard requirement '{requirement}' is not `always` of a condition on the present sample: {reason}",
+        message="hard requirement '{requirement}' is not `always` of a condition on the present sample: "
+        "{reason}",
         help="write it as `hard {requirement}: always (...)` without bounds, temporal operators, delta, rate "
         "and now inside, or make it soft",
         explanation="The learner watches hard requirements at every step, in a table over states. That works "
@@ -133,7 +134,7 @@ CODES: tuple[Code, ...] = (
         "an environment without a signal that the spec needs",
         "error",
         message="'{env}' does not offer signal '{signal}', which {user} needs",
-        help="it offers {offered}; rename the signal, or add `from \"NAME\"` to its declaration",
+        help='it offers {offered}; rename the signal, or add `from "NAME"` to its declaration',
         explanation="While learning, signals are computed from the environment's states, not read from data.",
         bad="# signal distance   with stlspec/GridWorld-v0\n",
         good='# signal distance from "d_goal"   with stlspec/GridWorld-v0\n',
@@ -171,8 +172,8 @@ CODES: tuple[Code, ...] = (
         explanation="policy.json in the output directory of `stlspec learn` has schema stlspec.policy/1: for "
         "every state of the environment the greedy action.",
         bad='{"schema": "stlspec.policy/1", "states": [[0, 0]], "actions": [7]}',
-        good='{"schema": "stlspec.policy/1", "env": {...}, "n_actions": 4, "states": [[0, 0]], "actions": [2], '
-        '"q": [[0, 0, 0, 0]]}',
+        good='{"schema": "stlspec.policy/1", "env": {...}, "n_actions": 4, "states": [[0, 0]], '
+        '"actions": [2], "q": [[0, 0, 0, 0]]}',
         kind="shown",
     ),
     Code(
@@ -181,9 +182,22 @@ CODES: tuple[Code, ...] = (
         "error",
         message="{observation} is not a state of this policy, which knows {states} states",
         help="pass the observation of the environment that the policy was learned in: {example}",
-        explanation="A tabular policy has an action for every state of its environment, and for nothing else.",
+        explanation="A tabular policy has an action for every state of its environment, and no others.",
         bad="policy.act([99, 99])\n",
         good="policy.act([0, 0])\n",
+        kind="shown",
+    ),
+    Code(
+        "D875",
+        "states of an unknown environment",
+        "error",
+        message="demonstration '{name}' has states, but no environment says which they are",
+        help='name the environment: --env ID, or "env": {{"id": ...}} in the demonstration; states that '
+        "are raw observations cannot be given rewards yet",
+        explanation="Rewards are values of an environment's discrete states: [row, col] on a map, or a "
+        "number.",
+        bad="# stlspec reward spec.stl demo.json   where demo.json has states and no env\n",
+        good="# stlspec reward spec.stl demo.json --env stlspec/GridWorld-v0 --map grid.txt\n",
         kind="shown",
     ),
 )

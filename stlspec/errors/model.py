@@ -81,9 +81,7 @@ class Diagnostic:
             "file": self.file,
             **_place(self.source, self.span),
             "help": self.help or None,
-            "labels": [
-                {"message": x.text, "file": x.source.name, **_place(x.source, x.span)} for x in self.labels
-            ],
+            "labels": [{"message": x.text, "file": x.source.name, **_place(x.source, x.span)} for x in self.labels],
         }
 
 
@@ -121,9 +119,7 @@ def render(diagnostic: Diagnostic, paint: Callable[[str, str], str] = _plain) ->
     return "\n".join(lines)
 
 
-def _drawn(
-    source: SourceText, span: Span, note: str, role: str, paint: Callable[[str, str], str]
-) -> list[str]:
+def _drawn(source: SourceText, span: Span, note: str, role: str, paint: Callable[[str, str], str]) -> list[str]:
     at = source.position(span.start)
     text, carets = source.excerpt(span, note)
     return [

@@ -17,12 +17,14 @@ from stlspec.lang.tree import span_of
 from stlspec.source import SourceText, Span
 
 OPERATOR_WORDS = (
-    "always eventually historically once until since unless release next prev wnext wprev not and or xor "
-    "implies iff globally finally"
+    "always eventually historically once until since unless release next prev wnext wprev not "
+    "and or xor implies iff globally finally"
 ).split()
 _RESERVED = frozenset(
-    "signal param let hard soft expect always eventually historically once until since unless release next "
-    "prev wnext wprev not and or xor implies iff true false inf".split()
+    (
+        "signal param let hard soft expect always eventually historically once until since unless "
+        "release next prev wnext wprev not and or xor implies iff true false inf"
+    ).split()
 )
 _CLAUSES = frozenset({"DEPENDS", "SCALE", "BOUND", "STRING"})
 _CLAUSE_WORDS = {"depends": "on", "scale": "NUMBER", "bound": "NAME"}
@@ -153,7 +155,11 @@ def _misspelt_clause(failure: Failure) -> Diagnostic | None:
 def _late_clause(failure: Failure) -> Diagnostic | None:
     """A clause after the formula."""
     token, tokens = failure.token, failure.tokens
-    if token is None or tokens[0].type not in ("HARD", "SOFT") or not any(t.type == "COLON" for t in tokens[: failure.at]):
+    if (
+        token is None
+        or tokens[0].type not in ("HARD", "SOFT")
+        or not any(t.type == "COLON" for t in tokens[: failure.at])
+    ):
         return None
     if token.type == "STRING":
         return failure.error("S010", clause="the quoted text")
@@ -204,9 +210,7 @@ def _cut_off(failure: Failure) -> Diagnostic | None:
 
 
 def _plain(failure: Failure) -> Diagnostic:
-    return failure.error(
-        "S001", found=_quoted(str(failure.token)), expected=_expected(failure.expected)
-    )
+    return failure.error("S001", found=_quoted(str(failure.token)), expected=_expected(failure.expected))
 
 
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (

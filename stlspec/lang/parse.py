@@ -115,7 +115,9 @@ def parse(source: SourceText) -> Syntax:
     )
 
 
-def parse_formula(source: SourceText, names: frozenset[str] = frozenset()) -> tuple[Expression | None, tuple[Diagnostic, ...]]:
+def parse_formula(
+    source: SourceText, names: frozenset[str] = frozenset()
+) -> tuple[Expression | None, tuple[Diagnostic, ...]]:
     """Parse a text that is one formula, such as the argument of `stlspec eval`."""
     automaton = _automaton()
     tokens = tuple(t for piece in cut(source, automaton.lark).statements for t in piece)
@@ -262,8 +264,7 @@ class _Feed:
             sign, after = tokens[end], tokens[end + 1]
             glued = after.start_pos == sign.end_pos
             if not glued or not (
-                (sign.type == "SLASH" and is_unit_word(str(after)))
-                or (sign.type == "POWER" and after.type == "NUMBER")
+                (sign.type == "SLASH" and is_unit_word(str(after))) or (sign.type == "POWER" and after.type == "NUMBER")
             ):
                 break
             end += 2

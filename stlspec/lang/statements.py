@@ -41,7 +41,7 @@ def cut(source: SourceText, lark: Lark) -> Cut:
     """Lex `source` and cut it into statements."""
     tokens: list[Token] = []
     comments: list[Text] = []
-    for token in lark.parse_interactive(source.text, start="lexicon").lexer_thread.lex(None):  # type: ignore[arg-type]
+    for token in lark.parse_interactive(source.text, start="lexicon").lexer_thread.lex(None):  # type: ignore[no-untyped-call]
         if token.type == "COMMENT":
             comments.append(Text(span_of(token), str(token)))
         else:

@@ -15,8 +15,10 @@ from stlspec.source import Span
 
 Child = Any  # a token, a node, or a clause made by one of the methods below
 OPERATORS = frozenset(
-    "always eventually historically once next prev wnext wprev until since unless release not and or xor "
-    "implies iff lt le gt ge eq ne assign add sub mul div pow neg".split()
+    (
+        "always eventually historically once next prev wnext wprev until since unless release not "
+        "and or xor implies iff lt le gt ge eq ne assign add sub mul div pow neg"
+    ).split()
 )
 
 
@@ -100,8 +102,12 @@ class TreeBuilder:
         return nodes.SignalStatement(
             _over(children),
             _name(children[1]),
-            *(clauses.get(field) for field in ("type", "unit", "range", "source", "doc")),
-            repeated=repeated,
+            clauses.get("type"),
+            clauses.get("unit"),
+            clauses.get("range"),
+            clauses.get("source"),
+            clauses.get("doc"),
+            repeated,
         )
 
     def use(self, children: list[Child]) -> nodes.UnsupportedStatement:

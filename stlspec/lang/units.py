@@ -19,8 +19,10 @@ NANOSECONDS = {
 
 STEP = "step"
 KNOWN = frozenset(
-    "m mm cm km um nm inch ft mi rad deg rev g kg t N Nm V mV A mA Ah W kW Wh J kJ Hz kHz MHz rpm K degC Pa kPa "
-    "bar L mol cd lx dB percent px bit byte".split()
+    (
+        "m mm cm km um nm inch ft mi rad deg rev g kg t N Nm V mV A mA Ah W kW Wh J kJ Hz kHz MHz "
+        "rpm K degC Pa kPa bar L mol cd lx dB percent px bit byte"
+    ).split()
 ) | {*NANOSECONDS, STEP}
 SPELLINGS = {
     "sec": "s",

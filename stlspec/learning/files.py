@@ -1,8 +1,8 @@
 """The output directory of a run: written in one step, resumed after an interruption.
 
-In: the texts and pictures of a finished run, or the state of an unfinished one. Out: files. While a run lasts
-everything is in the sibling directory OUT.partial (`checkpoint.json`); the results are written to
-OUT.partial/run, and renaming that directory is the only step that changes OUT, so nobody ever sees half a run.
+In: the texts and pictures of a finished run, or the state of an unfinished one. Out: files. While a run
+lasts everything is in the sibling directory OUT.partial (`checkpoint.json`); the results are written to
+OUT.partial/run, and renaming that directory is the only step that changes OUT: nobody ever sees half a run.
 """
 
 import json

@@ -5,7 +5,7 @@ as files have them, [row, col] on maps. Training time is the only number that tw
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -18,7 +18,7 @@ from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
 from stlspec.rewards import RewardMap
 from stlspec.scores import number
-from stlspec.semantics.evaluation import Evaluation, Verdict
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class Outcome:
     states: tuple[int, ...]
     actions: tuple[int, ...]
     goal_order: tuple[str, ...]
-    evaluation: Evaluation
+    evaluation: Evaluation[RequirementResult]
     meets_hard: bool
     training: Training
     policy: Policy
@@ -89,7 +89,7 @@ class Outcome:
     farming: Farming | None = None
     warnings: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
-    files: Mapping[str, str] = MappingProxyType({})
+    files: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def method(self) -> str:
@@ -153,7 +153,7 @@ class Outcome:
         }
 
 
-def meets(bundle: BundleData, evaluation: Evaluation, *, hard_only: bool = False) -> bool:
+def meets(bundle: BundleData, evaluation: Evaluation[RequirementResult], *, hard_only: bool = False) -> bool:
     """Tell whether all requirements, or all hard ones, are satisfied. Not in the paper: the success test."""
     return all(
         evaluation[r.name].verdict is Verdict.SATISFIED

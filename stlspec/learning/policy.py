@@ -46,7 +46,7 @@ def greedy_path(
     Returns: n + 1 states and n actions, n <= max_steps.
     """
     state, first_visit = start, {start: 0}
-    states, actions = [start], []
+    states, actions = [start], list[int]()
     while endings[state] == RUNS and len(actions) < max_steps:
         actions.append(greedy_action(q[state]))
         state = transitions[state][actions[-1]]
@@ -135,32 +135,32 @@ def load_policy(path: str | Path) -> Policy:
         place = place / FILE
     try:
         if place.stat().st_size > _LARGEST_FILE:
-            raise _Damage("the file is larger than any policy")
+            raise _DamageError("the file is larger than any policy")
         document = json.loads(place.read_text(encoding="utf-8"))
         return _policy(document)
     except OSError as error:
         problem = error.strerror or "it cannot be read"
     except (ValueError, OverflowError, RecursionError) as error:
-        problem = str(error) if isinstance(error, _Damage) else "it is not JSON in UTF-8"
+        problem = str(error) if isinstance(error, _DamageError) else "it is not JSON in UTF-8"
     raise DataError([diagnostic("D873", file=str(place), problem=problem)])
 
 
-class _Damage(ValueError):
+class _DamageError(ValueError):
     """What is wrong with the document, in the words of D873."""
 
 
 def _policy(document: Any) -> Policy:
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise _Damage(f"its schema is not {SCHEMA}")
+        raise _DamageError(f"its schema is not {SCHEMA}")
     environment, n_actions = document.get("env"), document.get("n_actions")
     if not isinstance(environment, dict) or type(n_actions) is not int or n_actions < 1:
-        raise _Damage("'env' or 'n_actions' is missing or of the wrong type")
+        raise _DamageError("'env' or 'n_actions' is missing or of the wrong type")
     states, actions, q = (_list(document, key) for key in ("states", "actions", "q"))
     if not len(states) == len(actions) == len(q):
-        raise _Damage("'states', 'actions' and 'q' differ in length")
+        raise _DamageError("'states', 'actions' and 'q' differ in length")
     named = tuple(_state(x) for x in states)
     if len(set(named)) < len(named):
-        raise _Damage("a state occurs twice")
+        raise _DamageError("a state occurs twice")
     return Policy(
         MappingProxyType(environment),
         n_actions,
@@ -173,7 +173,7 @@ def _policy(document: Any) -> Policy:
 def _list(document: dict[str, Any], key: str) -> list[Any]:
     value = document.get(key)
     if not isinstance(value, list) or not value:
-        raise _Damage(f"'{key}' must be a list that is not empty")
+        raise _DamageError(f"'{key}' must be a list that is not empty")
     return value
 
 
@@ -182,20 +182,20 @@ def _state(value: Any) -> State:
         return value
     if isinstance(value, list) and len(value) == 2 and all(type(x) is int and x >= 0 for x in value):
         return (value[0], value[1])
-    raise _Damage(f"{str(value)[:40]!r} is not a state: a number or [row, col]")
+    raise _DamageError(f"{str(value)[:40]!r} is not a state: a number or [row, col]")
 
 
 def _action(value: Any, n_actions: int) -> int:
     if type(value) is int and 0 <= value < n_actions:
         return value
-    raise _Damage(f"{str(value)[:40]!r} is not an action from 0 to {n_actions - 1}")
+    raise _DamageError(f"{str(value)[:40]!r} is not an action from 0 to {n_actions - 1}")
 
 
 def _values(row: Any, n_actions: int) -> tuple[float, ...]:
     if not isinstance(row, list) or len(row) != n_actions:
-        raise _Damage(f"a row of 'q' does not have {n_actions} values")
+        raise _DamageError(f"a row of 'q' does not have {n_actions} values")
     named = {"inf": inf, "-inf": -inf}
     values = [named.get(x, x) if isinstance(x, str) else x for x in row]
     if not all(type(x) in (int, float) and x == x for x in values):
-        raise _Damage("a value of 'q' is not a number")
+        raise _DamageError("a value of 'q' is not a number")
     return tuple(map(float, values))

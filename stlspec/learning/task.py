@@ -15,7 +15,7 @@ from stlspec.compiler.bundle import BundleData, Requirement
 from stlspec.compiler.ir import COMPARISONS, TEMPORAL, Node, reachable
 from stlspec.compiler.printing import expression_text
 from stlspec.envs.model import Environment
-from stlspec.errors import DataError, UsageError, diagnostic
+from stlspec.errors import UsageError, diagnostic
 from stlspec.learning.shaping import GOAL, RUNS, TERMINAL, VIOLATION
 from stlspec.semantics.robustness import evaluate_nodes, shown
 from stlspec.traces import make_trace
@@ -132,8 +132,10 @@ def _why(node: Node) -> str:
         return f"an operator such as delta, now or `eventually` stands inside its `{node.op}`"
     if node.op in TEMPORAL:
         return f"it is built with `{node.op}`"
-    return "it is about the first sample only" if node.op in COMPARISONS or node.op == "bool" else (
-        f"part of it, under `{node.op}`, is not under an `always`"
+    return (
+        "it is about the first sample only"
+        if node.op in COMPARISONS or node.op == "bool"
+        else (f"part of it, under `{node.op}`, is not under an `always`")
     )
 
 
@@ -175,9 +177,7 @@ def make_task(bundle: BundleData, environment: Environment) -> Task:
     )
 
 
-def _endings(
-    violating: Sequence[bool], goal: Sequence[bool], terminal: frozenset[int]
-) -> tuple[int, ...]:
+def _endings(violating: Sequence[bool], goal: Sequence[bool], terminal: frozenset[int]) -> tuple[int, ...]:
     """Say how an episode stands in each state; a goal that violates is a violation."""
     return tuple(
         VIOLATION if bad else GOAL if wanted else TERMINAL if state in terminal else RUNS
@@ -251,9 +251,11 @@ def signal_sources(bundle: BundleData, needed: set[str], environment: Environmen
             continue
         names = [name for name in (signal.source, signal.name) if name in environment.signal_names]
         if not names:
-            fields = {"env": environment.id, "signal": signal.name, "user": f"'{bundle.name}'"}
             offered = ", ".join(environment.signal_names) or "no signals"
-            raise UsageError([diagnostic("D870", offered=offered, **fields)])
+            user = f"spec '{bundle.name}'"
+            raise UsageError(
+                [diagnostic("D870", env=environment.id, signal=signal.name, user=user, offered=offered)]
+            )
         found[signal.name] = str(names[0])
     return found
 

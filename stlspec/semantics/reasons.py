@@ -1,6 +1,6 @@
 """Why a requirement has its value, in one line.
 
-In: the deciding predicate and the values of its operands at the deciding sample. Out: "d_obs = 0, needs >= 1".
+In: the deciding predicate and its operands at the deciding sample. Out: "d_obs = 0, needs >= 1".
 Numbers are cut to six digits unless that would hide which side of the bound the value is on.
 """
 

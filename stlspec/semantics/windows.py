@@ -81,15 +81,19 @@ def until(left: Floats, right: Floats, grid: Grid, interval: Interval, out: Floa
     """
     low, high = interval
     out = np.empty(left.shape) if out is None else out
-    if low == 0:
+    if low == 0 and high is None:
         suffix_until(_columns(left), _columns(right), _columns(out))
-    else:
-        reached = np.empty(left.shape)
-        suffix_until(_columns(left), _columns(right), _columns(reached))
-        _ahead(reached, grid, low, out)
-        np.minimum(out, always(left, grid, (0, low - 1), reached), out=out)
+        return out
+    scratch = np.empty(left.shape)
+    suffix_until(_columns(left), _columns(right), _columns(scratch))
+    if grid.spacing is None:
+        _until_uneven(left, right, index_windows(grid, interval), scratch, out)
+        return out
+    _shift(scratch, -(-low // grid.spacing), -np.inf, out)
+    if low > 0:
+        np.minimum(out, always(left, grid, (0, low - 1), scratch), out=out)
     if high is not None:
-        np.minimum(out, eventually(right, grid, interval), out=out)
+        np.minimum(out, eventually(right, grid, interval, scratch), out=out)
     return out
 
 
@@ -112,15 +116,16 @@ def index_windows(grid: Grid, interval: Interval) -> tuple[Ints, Ints]:
     times, n = grid.times, len(grid.times)
     low, high = interval
     span = int(times[-1]) - int(times[0])
+    index = np.arange(n, dtype=np.int64)
     if grid.spacing is not None:
-        index = np.arange(n, dtype=np.int64)
         begin = np.minimum(index + min(-(-low // grid.spacing), n), n)
-        end = np.full(n, n) if high is None else np.minimum(index + min(high // grid.spacing + 1, n), n)
+        count = n if high is None else min(high // grid.spacing + 1, n)
+        end = np.minimum(index + count, n)
     else:
         # Clipped to the length of the trace, which changes no window, so that the sums fit into int64.
-        begin = np.searchsorted(times, times + min(low, span + 1), side="left")
-        high = span if high is None else min(high, span)
-        end = np.searchsorted(times, times + high, side="right")
+        low, high = min(low, span + 1), span if high is None else min(high, span)
+        begin = index if low == 0 else np.searchsorted(times, times + low, side="left")
+        end = np.full_like(index, n) if high == span else np.searchsorted(times, times + high, side="right")
     return begin, np.maximum(begin, end)
 
 
@@ -135,8 +140,14 @@ def _slide(extremum: np.ufunc, values: Floats, grid: Grid, interval: Interval, o
         low, high = interval
         last = None if high is None else high // grid.spacing
         _slide_even(extremum, _columns(values), -(-low // grid.spacing), last, _columns(out))
+        return out
+    begin, end = index_windows(grid, interval)
+    if interval[1] is None:
+        suffixes = np.empty(values.shape)
+        suffix_extremum(extremum, _columns(values), _columns(suffixes))
+        _gather(suffixes, begin, _identity(extremum), out)
     else:
-        _slide_uneven(extremum, _columns(values), *index_windows(grid, interval), _columns(out))
+        _slide_uneven(extremum, _columns(values), begin, end, _columns(out))
     return out
 
 
@@ -198,22 +209,35 @@ def _slide_uneven(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, ou
     # frexp counts the binary digits: level l holds lengths from 2**l to 2**(l+1) - 1, level -1 the length 0.
     levels = (np.frexp(lengths)[1] - 1).astype(np.int8)
     current, span = values, 1
-    for level in range(int(levels.max()) + 1):
+    highest = int(levels.max())
+    for level in range(highest + 1):
         chosen = np.flatnonzero(levels == level)
         if len(chosen):
             out[chosen] = extremum(current[begin[chosen]], current[end[chosen] - span])
-        rows = max(len(current) - span, 0)
-        current, span = extremum(current[:rows], current[span:]), 2 * span
+        if level < highest:
+            current, span = extremum(current[:-span], current[span:]), 2 * span
 
 
-def _ahead(values: Floats, grid: Grid, low: int, out: Floats) -> None:
-    """Write the value at the first sample not before t + low; -inf past the end."""
-    if grid.spacing is not None:
-        shift = min(-(-low // grid.spacing), len(values))
-        out[: len(values) - shift] = values[shift:]
-        out[len(values) - shift :] = -np.inf
-        return
-    begin, _ = index_windows(grid, (low, None))
-    inside = begin < len(values)
-    out[inside] = values[begin[inside]]
-    out[~inside] = -np.inf
+def _until_uneven(left: Floats, right: Floats, window: tuple[Ints, Ints], onward: Floats, out: Floats) -> None:
+    """Write until, given the windows and, in `onward` (overwritten), until without bounds."""
+    begin, end = window
+    _gather(onward, begin, -np.inf, out)
+    index = np.arange(len(begin), dtype=np.int64)
+    _slide_uneven(np.minimum, _columns(left), index, begin, _columns(onward))
+    np.minimum(out, onward, out=out)
+    _slide_uneven(np.maximum, _columns(right), begin, end, _columns(onward))
+    np.minimum(out, onward, out=out)
+
+
+def _shift(values: Floats, count: int, beyond: float, out: Floats) -> None:
+    """Write values[i + count] to out[i], `beyond` past the end."""
+    kept = len(values) - min(count, len(values))
+    out[:kept] = values[len(values) - kept :]
+    out[kept:] = beyond
+
+
+def _gather(values: Floats, index: Ints, beyond: float, out: Floats) -> None:
+    """Write values[index[i]] to out[i], `beyond` where the index is past the end."""
+    n_inside = int(np.searchsorted(index, len(values)))
+    out[:n_inside] = values[index[:n_inside]]
+    out[n_inside:] = beyond

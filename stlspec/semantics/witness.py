@@ -128,9 +128,7 @@ def _descend_in_time(marks: _Marks, node: Node, sign: float, mask: Bools) -> Non
         return
     left, right = (marks.values[c][:, ::step] for c in node.children)
     wanted = sign * marks.wanted
-    for child, window in zip(
-        node.children, _until_ranges(left, right, wanted, rows, samples, begin, end), strict=True
-    ):
+    for child, window in zip(node.children, _until_ranges(left, right, wanted, rows, samples, begin, end), strict=True):
         marks.hand(child, sign, window[:, ::step])
 
 

@@ -1,0 +1,104 @@
+"""The compiled spec with its methods: what other programs embed.
+
+In: spec text, a spec file or a bundle file. Out: `Bundle`, the data of the compiler plus evaluation, saving and
+the graph. The methods hold no logic of their own; they call the functions of the stages.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stlspec.compiler import bundle_file, files
+from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.compiling import compile_source
+from stlspec.compiler.graph import to_networkx
+from stlspec.semantics.evaluation import Evaluation, evaluate
+from stlspec.source import SourceText
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+
+@dataclass(frozen=True)
+class Bundle(BundleData):
+    """A compiled spec: immutable, safe to share between threads, equal where the meaning and the text are."""
+
+    @cached_property
+    def meaning_sha256(self) -> str:
+        """The hash that alone decides "the same spec": of everything but text, file names and docs."""
+        return bundle_file.meaning_sha256(self)
+
+    @cached_property
+    def source_sha256(self) -> str:
+        """The hash of the text that the spec was compiled from."""
+        return bundle_file.source_sha256(self)
+
+    def evaluate(self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0) -> Evaluation:
+        """Evaluate every requirement on one trace, a batch, or a ragged list of traces.
+
+        Paper: Definition 5, quantitative semantics; the verdict is the Boolean semantics.
+
+        Args:    signals: by name; each (n_samples,), or (n_traces, n_samples), or a list of arrays.
+                 time: stamps of the same shape, in the spec's unit; None where samples are counted or periodic.
+                 end: "clip" (a trace is a complete episode) or "strict" (it must reach the horizon).
+                 at: the sample whose value is wanted; negative counts from the end.
+        Returns: for each requirement robustness, verdict, witness, and its value at every sample.
+        Raises:  DataError: a signal is missing, NaN, of another length, ... UsageError: `end` or `at` is wrong.
+        """
+        return evaluate(self, signals, time, end=end, at=at)
+
+    def to_networkx(self) -> "nx.DiGraph":
+        """Return the DAG of requirements, edges from prerequisite to dependant, weights on the nodes."""
+        return to_networkx(self)
+
+    def dumps(self) -> bytes:
+        """Return the bundle as canonical JSON, the same bytes wherever it is built."""
+        return bundle_file.dump(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write the bundle to a file, whole or not at all. Raises: InputError: it cannot be written."""
+        files.write_bytes(path, self.dumps())
+
+    def __reduce__(self) -> tuple[Callable[[bytes], "Bundle"], tuple[bytes]]:
+        """Pickle as the bundle file, so that worker processes get it checked."""
+        return _loads, (self.dumps(),)
+
+
+def publish(data: BundleData) -> Bundle:
+    """Give the data of a compiled spec its methods."""
+    return Bundle(**{field.name: getattr(data, field.name) for field in fields(BundleData)})
+
+
+def _loads(data: bytes) -> Bundle:
+    return publish(bundle_file.load(data))
+
+
+def compile(spec: str | Path, params: Mapping[str, float | str] | None = None) -> Bundle:  # noqa: A001
+    """Compile a spec.
+
+    Args:    spec: the text of a spec, or the path of a spec file as a `Path`.
+             params: values of params; a number is in the declared unit, a text such as "12s" is converted.
+    Returns: the bundle.
+    Raises:  SpecError: the text has errors (`.diagnostics`). InputError: the file cannot be used, or a param
+             has no value.
+    """
+    source = files.read_source(spec) if isinstance(spec, Path) else SourceText.of("<text>", spec)
+    return publish(compile_source(source, params))
+
+
+def load(path: str | Path) -> Bundle:
+    """Load a compiled bundle from a file; nothing in it is executed.
+
+    Raises: InputError: it cannot be read. BundleError: it is damaged, foreign or was changed.
+    """
+    return publish(files.read_bundle(path))
+
+
+def read(path: str | Path, params: Mapping[str, float | str] | None = None) -> Bundle:
+    """Compile a spec file, or load it if it is a bundle.
+
+    Raises: SpecError, InputError, BundleError as `compile` and `load`; UsageError: params with a bundle.
+    """
+    return publish(files.read_spec(path, params))

@@ -1,0 +1,184 @@
+"""The commands on demonstrations: score, reward, eval.
+
+In: a spec or a formula, and data files. Out: tables, JSON, CSV, a reward map. The heavy stages are imported at
+the head of each command, so that the other commands start fast.
+"""
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.output import Format, ScoreFormat, print_json, warn
+from stlspec.errors import GateError, UsageError, diagnostic
+
+if TYPE_CHECKING:
+    from stlspec.envs.model import Environment
+    from stlspec.scores import Ranking
+
+
+class Gate(StrEnum):
+    """Which requirements every demonstration must meet."""
+
+    HARD = "hard"
+    ALL = "all"
+
+
+class OnNan(StrEnum):
+    """What to do with a sample that is not a number."""
+
+    REFUSE = "refuse"
+    HOLD = "hold"
+    DROP = "drop"
+
+
+Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")]
+Data = Annotated[list[str], typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ")]
+End = Annotated[str, typer.Option("--end", metavar="clip|strict", help="what the end of a trace means")]
+OnNanOption = Annotated[OnNan, typer.Option("--on-nan", help="what to do with a NaN")]
+EnvOption = Annotated[str | None, typer.Option("--env", metavar="ID", help="the environment, by gymnasium id")]
+EnvArgs = Annotated[
+    list[str] | None,
+    typer.Option("--env-arg", metavar="KEY=VALUE", help="an argument of the environment; may be repeated"),
+]
+MapOption = Annotated[Path | None, typer.Option("--map", metavar="FILE", help="its map, rows of text")]
+DemoEnv = Annotated[str | None, typer.Option("--demo-env", metavar="ID", help="the environment of the demonstrations")]
+DemoMap = Annotated[Path | None, typer.Option("--demo-map", metavar="FILE", help="the map of the demonstrations")]
+
+
+def environment_from(env: str | None, args: list[str] | None, map_file: Path | None) -> "Environment | None":
+    """Make the environment that the options describe; None if they describe none."""
+    from stlspec.envs.catalogue import make_environment, parse_env_args, read_map
+
+    if env is None:
+        for option, given in (("--env-arg", args), ("--map", map_file)):
+            if given:
+                what = f"`{option}` needs an environment"
+                raise UsageError([diagnostic("D880", what=what, help="name one with `--env ID`")])
+        return None
+    rows = read_map(map_file) if map_file is not None else None
+    return make_environment(env, parse_env_args(args or []), rows)
+
+
+def demonstration_environment(
+    env: str | None,
+    args: list[str] | None,
+    map_file: Path | None,
+    demo_env: str | None,
+    demo_map: Path | None,
+) -> "Environment | None":
+    """Make the environment on which demonstrations were made, where it is not the one of the run."""
+    if demo_env is None and demo_map is None:
+        return None
+    other = demo_env is not None and demo_env != env
+    rows = demo_map if demo_map is not None or other else map_file
+    return environment_from(demo_env or env, None if other else args, rows)
+
+
+def score(
+    spec: Spec,
+    demonstrations: Data,
+    params: Params = None,
+    require: Annotated[
+        Gate | None, typer.Option("--require", help="exit with 1 unless every demonstration meets these")
+    ] = None,
+    at: Annotated[
+        int | None, typer.Option("--at", metavar="K", help="values at sample K; negative counts from the end")
+    ] = None,
+    end: End = "clip",
+    on_nan: OnNanOption = OnNan.REFUSE,
+    env: EnvOption = None,
+    env_arg: EnvArgs = None,
+    map_file: MapOption = None,
+    demo_env: DemoEnv = None,
+    demo_map: DemoMap = None,
+    output: Annotated[ScoreFormat, typer.Option("--format", help="how to print")] = ScoreFormat.TEXT,
+) -> None:
+    """Score and rank demonstrations against a spec, and say why they fail."""
+    from stlspec import api, report, scores
+    from stlspec.demos import load_demonstrations
+
+    bundle = api.read(spec, read_params(params))
+    environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
+        env, env_arg, map_file
+    )
+    ranking = scores.score(
+        bundle, load_demonstrations(demonstrations), environment, end=end, at=at, on_nan=on_nan.value
+    )
+    if output is ScoreFormat.JSON:
+        print_json(ranking.to_json())
+    elif output is ScoreFormat.CSV:
+        print(report.ranking_csv(ranking), end="")
+    else:
+        report.print_ranking(ranking, sys.stdout)
+    if require is not None and not _passes(ranking, require):
+        raise typer.Exit(GateError.exit_code)
+
+
+def _passes(ranking: "Ranking", gate: Gate) -> bool:
+    """Tell whether every demonstration satisfies the requirements that the gate names."""
+    named = [name for name, strength, _, _ in ranking.requirements if gate is Gate.ALL or strength == "hard"]
+    return all(
+        d.requirements[name].result.verdict.value == "satisfied" for d in ranking.demonstrations for name in named
+    )
+
+
+def reward(
+    spec: Spec,
+    demonstrations: Data,
+    out: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="the reward map to write")],
+    params: Params = None,
+    on_nan: OnNanOption = OnNan.REFUSE,
+    env: EnvOption = None,
+    env_arg: EnvArgs = None,
+    map_file: MapOption = None,
+    demo_env: DemoEnv = None,
+    demo_map: DemoMap = None,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Infer the reward of every state from ranked demonstrations (Algorithm 1)."""
+    from stlspec import api, report, rewards
+    from stlspec.compiler.files import write_bytes
+    from stlspec.demos import load_demonstrations
+
+    bundle = api.read(spec, read_params(params))
+    environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
+        env, env_arg, map_file
+    )
+    found = rewards.infer_reward(bundle, load_demonstrations(demonstrations), environment, on_nan=on_nan.value)
+    warn(found.warnings())
+    document = found.to_json()
+    write_bytes(out, report.json_bytes(document))
+    if output is Format.JSON:
+        print_json(document)
+    else:
+        report.print_reward(found, str(out), sys.stdout)
+
+
+def evaluate_formula(
+    formula: Annotated[str, typer.Argument(metavar="FORMULA", help="such as 'always (x > 0)'")],
+    files: Annotated[list[str], typer.Argument(metavar="DATA...", help="traces: CSV, JSON, JSONL, NPZ")],
+    params: Params = None,
+    time: Annotated[str, typer.Option("--time", metavar="TIME", help="as in a spec: step, s, '100 ms'")] = "step",
+    at: Annotated[int, typer.Option("--at", metavar="K", help="the sample whose value is shown")] = 0,
+    end: End = "clip",
+    on_nan: OnNanOption = OnNan.REFUSE,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Evaluate one formula on data; no spec file is needed."""
+    from stlspec import report
+    from stlspec.demos import load_demonstrations
+    from stlspec.formulas import evaluate_on
+
+    results = evaluate_on(
+        formula, load_demonstrations(files), time, read_params(params), end=end, at=at, on_nan=on_nan.value
+    )
+    if output is Format.JSON:
+        print_json(report.formula_document(formula, results))
+    else:
+        report.print_formula(results, sys.stdout)
+    if any(r.result.verdict.value != "satisfied" for r in results):
+        raise typer.Exit(1)

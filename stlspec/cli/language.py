@@ -1,0 +1,138 @@
+"""The commands on specs themselves: check, explain, compile, graph.
+
+In: spec files. Out: diagnostics, bundles, the DAG. `check` and `explain` load nothing heavy.
+"""
+
+import sys
+from difflib import get_close_matches
+from pathlib import Path
+from textwrap import fill
+from typing import Annotated
+
+import typer
+
+from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.output import Format, GraphFormat, counted, error_document, print_diagnostics, print_json
+from stlspec.compiler import bundle_file, files
+from stlspec.compiler.compiling import check_source
+from stlspec.errors import CATALOGUE, Diagnostic, InputError, UsageError, diagnostic
+
+
+def check(
+    specs: Annotated[list[Path], typer.Argument(metavar="FILE...", help="spec files, or compiled bundles")],
+    params: Params = None,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Report everything that is wrong with spec files, in one run."""
+    values = read_params(params)
+    found: list[Diagnostic] = []
+    exit_code = 0
+    for path in specs:
+        try:
+            found += _checked(path, values)
+        except InputError as error:
+            found += error.diagnostics
+            exit_code = 2
+    errors = sum(d.severity == "error" for d in found)
+    exit_code = max(exit_code, 1 if errors else 0)
+    if output is Format.JSON:
+        document = {"schema": "stlspec.check/1", "diagnostics": [d.to_json() for d in found]}
+        print_json(error_document(exit_code, found) if exit_code == 2 else document)
+    else:
+        print_diagnostics(found, sys.stdout)
+        print(_summary(errors, len(found) - errors, len(specs)))
+    raise typer.Exit(exit_code)
+
+
+def _checked(path: Path, values: dict[str, str]) -> tuple[Diagnostic, ...]:
+    data = files.read_bytes(path, bundle_file.LARGEST)
+    if files.looks_like_bundle(path, data):
+        bundle_file.load(data, str(path))
+        return ()
+    return check_source(files.decode(data, str(path)), values).diagnostics
+
+
+def _summary(errors: int, warnings: int, n_files: int) -> str:
+    if not errors and not warnings:
+        return f"{counted(n_files, 'file')} checked, nothing to report"
+    parts = [counted(n, noun) for n, noun in ((errors, "error"), (warnings, "warning")) if n]
+    return f"{' and '.join(parts)} in {counted(n_files, 'file')}"
+
+
+def explain(
+    code: Annotated[str | None, typer.Argument(metavar="CODE", help="such as I401; all codes if left out")] = None,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Say what a diagnostic code means, with a bad and a good example."""
+    if code is None:
+        rows = [{"code": row.code, "title": row.title, "level": row.level} for row in CATALOGUE.values()]
+        if output is Format.JSON:
+            print_json({"schema": "stlspec.explain/1", "codes": rows})
+        else:
+            print("\n".join(f"{row['code']}  {row['level']:<8} {row['title']}" for row in rows))
+        return
+    row = CATALOGUE.get(code.upper())
+    if row is None:
+        close = get_close_matches(code.upper(), CATALOGUE, 1, 0.6)
+        way = f"did you mean `{close[0]}`?" if close else "`stlspec explain` lists all codes"
+        raise UsageError([diagnostic("D880", what=f"there is no code `{code}`", help=way)])
+    if output is Format.JSON:
+        keys = ("code", "title", "level", "explanation", "bad", "good")
+        print_json({"schema": "stlspec.explain/1", **{key: getattr(row, key) for key in keys}})
+        return
+    print(f"{row.code} ({row.level}): {row.title}\n\n{_wrapped(row.explanation)}\n")
+    print(f"Bad:\n{_indented(row.bad)}\n\nGood:\n{_indented(row.good)}")
+
+
+def _wrapped(text: str, width: int = 88) -> str:
+    return fill(text, width)
+
+
+def _indented(text: str) -> str:
+    return "\n".join(f"    {line[:120]}" for line in text.rstrip("\n").split("\n"))
+
+
+def compile_spec(
+    spec: Annotated[Path, typer.Argument(metavar="FILE", help="a spec file")],
+    out: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="the bundle to write")],
+    params: Params = None,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Compile a spec into a bundle that every other command takes."""
+    bundle = files.read_spec(spec, read_params(params))
+    files.write_bytes(out, bundle_file.dump(bundle))
+    meaning = bundle_file.meaning_sha256(bundle)
+    if output is Format.JSON:
+        source = bundle_file.source_sha256(bundle)
+        print_json(
+            {
+                "schema": "stlspec.compile/1",
+                "file": str(out),
+                "meaning_sha256": meaning,
+                "source_sha256": source,
+            }
+        )
+    else:
+        print(f"{out}: {counted(len(bundle.requirements), 'requirement')}, meaning {meaning[:12]}")
+
+
+def graph(
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="a spec file or a bundle")],
+    params: Params = None,
+    output: Annotated[GraphFormat, typer.Option("--format", help="how to draw it")] = GraphFormat.TEXT,
+) -> None:
+    """Draw the DAG of requirements with their weights."""
+    from stlspec.compiler import graph as drawing
+
+    bundle = files.read_spec(spec, read_params(params))
+    if output is GraphFormat.JSON:
+        rows = zip(bundle.requirements, bundle.raw_weights, bundle.weights, strict=True)
+        nodes = [{"name": r.name, "strength": r.strength, "raw_weight": raw, "weight": w} for r, raw, w in rows]
+        print_json({"schema": "stlspec.graph/1", "requirements": nodes, "edges": [list(e) for e in bundle.edges]})
+        return
+    draw = {
+        GraphFormat.TEXT: drawing.tree_text,
+        GraphFormat.MERMAID: drawing.mermaid_text,
+        GraphFormat.DOT: drawing.dot_text,
+    }
+    print(draw[output](bundle))

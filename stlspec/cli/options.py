@@ -1,0 +1,49 @@
+"""Options that several commands share, and how their texts are read.
+
+In: words of the command line. Out: mappings and environments, or a usage diagnostic that names the word.
+"""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from stlspec.cli.output import Format
+from stlspec.errors import UsageError, diagnostic
+
+Params = Annotated[
+    list[str] | None,
+    typer.Option("--param", "-p", metavar="NAME=VALUE", help="bind a param; may be repeated"),
+]
+FormatOption = Annotated[Format, typer.Option("--format", help="text for a person, json for a program")]
+
+MANY = ("--demos",)
+"""Options that take every path up to the next option."""
+
+
+def read_params(given: Sequence[str] | None) -> dict[str, str]:
+    """Read `-p NAME=VALUE` options; the last one of a name counts."""
+    values: dict[str, str] = {}
+    for text in given or ():
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            what = f"`-p {text[:40]}` binds nothing"
+            raise UsageError([diagnostic("D880", what=what, help="write -p NAME=VALUE")])
+        values[name.strip()] = value.strip()
+    return values
+
+
+def expand_many(arguments: Sequence[str]) -> list[str]:
+    """Repeat the options of `MANY` before each of their paths: `--demos a b` becomes `--demos a --demos b`."""
+    expanded: list[str] = []
+    current, fresh = "", False
+    for word in arguments:
+        if word in MANY:
+            current, fresh = word, True
+        elif current and (not word.startswith("-") or word == "-"):
+            expanded += [current, word]
+            fresh = False
+        else:
+            expanded += [current, word] if fresh else [word]
+            current, fresh = "", False
+    return [*expanded, current] if fresh else expanded

@@ -1,0 +1,118 @@
+"""The command learn: from a spec, an environment and demonstrations to a policy.
+
+In: options. Out: the output directory, and a short account on stdout; a progress bar on stderr.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from stlspec.cli.data import (
+    DemoEnv,
+    DemoMap,
+    EnvArgs,
+    MapOption,
+    Spec,
+    demonstration_environment,
+    environment_from,
+)
+from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.output import Format, print_json, warn
+from stlspec.errors import UsageError, diagnostic
+
+if TYPE_CHECKING:
+    from stlspec.report import Progress
+
+
+class Method(StrEnum):
+    """How the policy is trained."""
+
+    SHAPED = "shaped"
+    PAPER = "paper"
+    PLAIN = "plain"
+
+
+def learn(
+    spec: Spec,
+    env: Annotated[str, typer.Option("--env", metavar="ID", help="the environment, by gymnasium id")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="where policy, log and pictures go")],
+    demos: Annotated[
+        list[str] | None,
+        typer.Option("--demos", metavar="DEMO...", help="demonstrations; takes every path up to the next option"),
+    ] = None,
+    reward: Annotated[
+        Path | None,
+        typer.Option("--reward", metavar="R.json", help="a reward map in place of demonstrations"),
+    ] = None,
+    params: Params = None,
+    env_arg: EnvArgs = None,
+    map_file: MapOption = None,
+    demo_env: DemoEnv = None,
+    demo_map: DemoMap = None,
+    method: Annotated[Method, typer.Option("--method", help="how to train")] = Method.SHAPED,
+    episodes: Annotated[int | None, typer.Option("--episodes", help="default: by the size of the map")] = None,
+    seed: Annotated[int, typer.Option("--seed", help="same seed, same result")] = 0,
+    max_steps: Annotated[int | None, typer.Option("--max-steps", help="step limit of an episode")] = None,
+    gamma: Annotated[float, typer.Option("--gamma", help="discount")] = 0.99,
+    alpha: Annotated[float, typer.Option("--alpha", help="learning rate")] = 0.1,
+    epsilon: Annotated[float, typer.Option("--epsilon", help="share of random actions")] = 0.4,
+    step_cost: Annotated[float, typer.Option("--step-cost", help="what each step costs")] = 0.01,
+    mask: Annotated[
+        bool, typer.Option("--mask/--no-mask", help="never repeat a step that broke a hard requirement")
+    ] = True,
+    output: FormatOption = Format.TEXT,
+) -> None:
+    """Learn a policy that meets the requirements (Algorithms 1 and 2)."""
+    from stlspec import api, learning, report, rewards
+    from stlspec.demos import load_demonstrations
+
+    if (reward is None) == (not demos):
+        what = "`learn` takes demonstrations or a reward map" + (", not both" if demos else "")
+        raise UsageError([diagnostic("D880", what=what, help="give --demos DEMO... or --reward R.json")])
+    bundle = api.read(spec, read_params(params))
+    environment = environment_from(env, env_arg, map_file)
+    assert environment is not None
+    with _progress() as bar:
+        outcome = learning.learn(
+            bundle,
+            environment,
+            load_demonstrations(demos or []),
+            rewards.load_reward(reward) if reward is not None else None,
+            method=method.value,
+            episodes=episodes,
+            seed=seed,
+            max_steps=max_steps,
+            gamma=gamma,
+            alpha=alpha,
+            epsilon=epsilon,
+            step_cost=step_cost,
+            mask=mask,
+            demo_environment=demonstration_environment(env, env_arg, map_file, demo_env, demo_map),
+            out=out,
+            progress=bar,
+        )
+    warn(outcome.warnings)
+    if output is Format.JSON:
+        print_json(outcome.to_json())
+    else:
+        report.print_outcome(outcome, bundle, environment, out, sys.stdout)
+    if not outcome.meets_hard:
+        raise typer.Exit(1)
+
+
+@contextmanager
+def _progress() -> Iterator["Progress"]:
+    """Show a bar on stderr while episodes go by; Ctrl-C says how to go on."""
+    from stlspec import report
+
+    try:
+        with report.progress(sys.stderr) as bar:
+            yield bar
+    except KeyboardInterrupt:
+        print("interrupted: the same command again goes on from here", file=sys.stderr)
+        raise

@@ -1,0 +1,109 @@
+"""What the demonstrations contribute to training: the reward map, and the first entries of the mask.
+
+In: demonstrations, or a reward map inferred before. Out: `Evidence`. Nothing is learned here. A bad
+demonstration says which transition violates; that is true on the map it was made on and nowhere else, so only
+demonstrations with the very same transition table enter the mask.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import meaning_sha256
+from stlspec.demos import Demonstration
+from stlspec.envs.model import Environment
+from stlspec.errors import Diagnostic, diagnostic
+from stlspec.learning.shaping import VIOLATION
+from stlspec.learning.task import Task
+from stlspec.rewards import RankedStates, RewardMap, ranked_states, reward_of
+
+Pair = tuple[int, int]
+"""A state and an action."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What training starts from.
+
+    reward: the map R. violating: pairs of state and action that bad demonstrations showed to violate.
+    bad_elsewhere: how many bad demonstrations were made on another transition table.
+    """
+
+    reward: RewardMap
+    violating: tuple[Pair, ...]
+    bad: int
+    bad_elsewhere: int
+    warnings: tuple[Diagnostic, ...]
+
+
+def gather(
+    bundle: BundleData,
+    task: Task,
+    environment: Environment,
+    demonstrations: Iterable[Demonstration],
+    reward: RewardMap | None,
+    demo_environment: Environment | None,
+) -> Evidence:
+    """Turn demonstrations into a reward map and pairs to mask.
+
+    Paper: Algorithm 1; its section 3.2 for learning on another map than the demonstrations were made on.
+
+    Args:    bundle: the compiled spec. task: tables of the environment to learn in. environment: that one.
+             demonstrations: may be empty. reward: a map inferred before; None = from the demonstrations.
+             demo_environment: where they were made, unless they say so themselves; None = `environment`.
+    Returns: the evidence, with a warning for a reward that is 0 everywhere or comes from another spec.
+    Raises:  DataError: a demonstration cannot be used (see `infer_reward`).
+    """
+    ranked = ranked_states(bundle, demonstrations, demo_environment or environment)
+    warnings: list[Diagnostic] = []
+    if reward is None:
+        reward = reward_of(bundle, ranked, demo_environment or environment)
+    elif reward.meaning_sha256 != meaning_sha256(bundle):
+        warnings.append(diagnostic("D865"))
+    if reward.all_zero:
+        reason = "" if ranked else ": there are no demonstrations"
+        warnings.append(diagnostic("D864", reason=reason))
+    bad = [demonstration for demonstration in ranked if demonstration.label == "bad"]
+    here = [d for d in bad if same_table(d, environment)]
+    pairs = {pair for d in here for pair in violating_pairs(task, d.states)}
+    return Evidence(reward, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings))
+
+
+def same_table(demonstration: RankedStates, environment: Environment) -> bool:
+    """Tell whether a demonstration was made on the very transition table that is learned on.
+
+    Not in the paper: on an unseen map the old obstacles may be free.
+    """
+    known = demonstration.environment.fingerprint
+    return known is not None and known == environment.fingerprint
+
+
+def violating_pairs(task: Task, states: Sequence[int]) -> set[Pair]:
+    """Collect the pairs of state and action by which a demonstration entered a violating state.
+
+    Not in the paper: Algorithm 2 forgets what it violated; the mask remembers.
+
+    Args:    task: tables over states. states: of a demonstration, (n_samples,).
+    Returns: every action that leads from one state to the next, where that one violates.
+    """
+    return {
+        (before, action)
+        for before, after in pairwise(states)
+        if task.endings[after] == VIOLATION
+        for action, reached in enumerate(task.transitions[before])
+        if reached == after
+    }
+
+
+def notes(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...]:
+    """Say what bad demonstrations did, since the reward does not show it. Not in the paper: the report."""
+    if not evidence.bad:
+        return ()
+    count = f"{evidence.bad} bad demonstration{'s' if evidence.bad > 1 else ''}"
+    if method == "paper" or not mask:
+        return (f"{count}: no mask, so they act through the reward map only",)
+    used = evidence.bad - evidence.bad_elsewhere
+    text = f"{count} act{'s' if evidence.bad == 1 else ''} through the mask and the pictures only"
+    masked = f"{used} made on this transition table, {len(evidence.violating)} pairs masked from the start"
+    return (f"{text}: {masked}",)

@@ -1,0 +1,231 @@
+"""Pictures of a run: the reward on the map, and the learning curve. The one module that imports matplotlib.
+
+In: tables over states and the log. Out: PNG files, or text where matplotlib is not installed. Figures are
+made without pyplot, so that no global state of the host program changes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stlspec.learning.shaping import GOAL, LIMIT, TERMINAL, VIOLATION
+
+_INK, _MUTED, _PATH, _OBSTACLE = "#1b1f24", "#6b7480", "#e07a1f", "#3a4048"
+_OUTCOME_COLOURS = {GOAL: "#2e8b57", VIOLATION: "#c0392b", LIMIT: "#9aa3ad", TERMINAL: "#7d5ba6"}
+_OUTCOME_NAMES = {GOAL: "goal", VIOLATION: "violation", LIMIT: "step limit", TERMINAL: "terminal state"}
+_ANNOTATED_UP_TO = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What a picture of the reward shows.
+
+    title: shown above. values: (n_states,), R. endings: (n_states,). start: state. path: the greedy path.
+    n_columns: the width of the map; None where states are no cells.
+    """
+
+    title: str
+    values: tuple[float, ...]
+    endings: tuple[int, ...]
+    start: int
+    path: tuple[int, ...]
+    n_columns: int | None
+
+
+def available() -> bool:
+    """Tell whether matplotlib is installed, without importing it."""
+    return find_spec("matplotlib") is not None
+
+
+def reward_text(scene: Scene) -> str:
+    """Draw the reward as text: two digits a cell, obstacles ##, start S, goal G, the path in brackets.
+
+    Not in the paper: its figures, where there is no matplotlib.
+    """
+    on_path = set(scene.path)
+    cells = []
+    for state, value in enumerate(scene.values):
+        mark = {GOAL: "G", VIOLATION: "#"}.get(scene.endings[state], "S" if state == scene.start else " ")
+        body = f"{mark}{round(100 * value):4d}"
+        cells.append(f"[{body}]" if state in on_path else f" {body} ")
+    width = scene.n_columns or 10
+    rows = ["".join(cells[i : i + width]).rstrip() for i in range(0, len(cells), width)]
+    legend = "100 times the reward; S start, G goal, # violates a hard requirement, [ ] the learned path"
+    return "\n".join([scene.title, "", *rows, "", legend]) + "\n"
+
+
+def draw_reward(scene: Scene, place: Path) -> None:
+    """Write a heat-map of the reward, on the map where there is one.
+
+    Paper: figures 3 and 5 to 8, rewards left and the policy right; here in one picture.
+    """
+    figure = _figure(scene)
+    axes = figure.add_subplot()
+    if scene.n_columns is None:
+        _draw_bars(axes, scene)
+    else:
+        _draw_cells(figure, axes, scene, scene.n_columns)
+    axes.set_title(scene.title, color=_INK, fontsize=11, pad=10)
+    figure.savefig(place, dpi=150)
+
+
+def _figure(scene: Scene) -> Any:
+    from matplotlib.figure import Figure
+
+    if scene.n_columns is None:
+        return Figure(figsize=(7, 3.2), layout="constrained")
+    n_rows = len(scene.values) // scene.n_columns
+    cell = min(0.75, 9 / max(n_rows, scene.n_columns))
+    width, height = max(4.2, cell * scene.n_columns + 1.6), max(3.4, cell * n_rows + 1.4)
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
+    values = np.array(scene.values).reshape(-1, n_columns)
+    limit = max(1e-12, float(np.abs(values).max()))
+    image = axes.imshow(values, cmap="RdBu", vmin=-1.5 * limit, vmax=1.5 * limit)
+    image.set_clim(-limit, limit)
+    bar = figure.colorbar(image, ax=axes, shrink=0.85, pad=0.03)
+    bar.set_label("reward R(s)", color=_INK)
+    bar.outline.set_visible(False)
+    n_rows = len(values)
+    if max(n_rows, n_columns) <= _ANNOTATED_UP_TO:
+        _write_values(axes, values, limit)
+    for state, ending in enumerate(scene.endings):
+        row, column = divmod(state, n_columns)
+        if ending == VIOLATION:
+            _draw_obstacle(axes, row, column)
+    rows, columns = np.divmod(np.array(scene.path), n_columns)
+    axes.plot(columns, rows, color="white", linewidth=5, solid_capstyle="round", alpha=0.9, zorder=3)
+    axes.plot(columns, rows, color=_PATH, linewidth=2.5, solid_capstyle="round", zorder=4)
+    _mark_ends(axes, scene, n_columns)
+    axes.set_xticks(range(n_columns), minor=False)
+    axes.set_yticks(range(n_rows), minor=False)
+    axes.set_xticks(np.arange(n_columns + 1) - 0.5, minor=True)
+    axes.set_yticks(np.arange(n_rows + 1) - 0.5, minor=True)
+    axes.grid(which="minor", color="#d5d9de", linewidth=0.8)
+    axes.tick_params(which="both", length=0, colors=_MUTED, labelsize=8)
+    axes.set_xlabel("column", color=_MUTED)
+    axes.set_ylabel("row", color=_MUTED)
+    axes.spines[:].set_visible(False)
+
+
+def _write_values(axes: Any, values: Any, limit: float) -> None:
+    for (row, column), value in np.ndenumerate(values):
+        if value:
+            shade = "white" if abs(value) > 0.6 * limit else _INK
+            axes.text(column, row + 0.36, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
+
+
+def _draw_obstacle(axes: Any, row: int, column: int) -> None:
+    from matplotlib.patches import Rectangle
+
+    box = Rectangle(
+        (column - 0.42, row - 0.42), 0.84, 0.84, facecolor="none", edgecolor=_OBSTACLE, hatch="////", zorder=2
+    )
+    axes.add_patch(box)
+
+
+def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
+    style: dict[str, Any] = {"markeredgecolor": "white", "markeredgewidth": 1.2, "linestyle": "", "zorder": 5}
+    row, column = divmod(scene.start, n_columns)
+    axes.plot([column], [row], marker="o", markersize=12, color=_INK, label="start", **style)
+    goals = [divmod(s, n_columns) for s, ending in enumerate(scene.endings) if ending == GOAL]
+    if goals:
+        rows, columns = zip(*goals, strict=True)
+        axes.plot(columns, rows, marker="*", markersize=18, color="#f2b705", label="goal", **style)
+    handles, _ = axes.get_legend_handles_labels()
+    handles += _legend_extras()
+    axes.legend(
+        handles=handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.12),
+        ncols=4,
+        frameon=False,
+        fontsize=8,
+        labelcolor=_INK,
+    )
+
+
+def _legend_extras() -> list[Any]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    return [
+        Line2D([], [], color=_PATH, linewidth=2.5, label="learned path"),
+        Patch(facecolor="none", edgecolor=_OBSTACLE, hatch="////", label="violates"),
+    ]
+
+
+def _draw_bars(axes: Any, scene: Scene) -> None:
+    colours = ["#2b6cb0" if value >= 0 else "#c0392b" for value in scene.values]
+    axes.bar(range(len(scene.values)), scene.values, color=colours, width=1.0)
+    axes.set_xlabel("state", color=_MUTED)
+    axes.set_ylabel("reward R(s)", color=_MUTED)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def draw_curve(
+    steps: Sequence[int],
+    endings: Sequence[int],
+    first_success: int | None,
+    title: str,
+    place: Path,
+) -> None:
+    """Write the learning curve: how episodes end, and how many steps they take.
+
+    Paper: figure 4, steps per training episode; the share of outcomes is ours.
+
+    Args:    steps, endings: the log, (n_episodes,). first_success: the episode of the first greedy check from
+             which on all succeed. title: shown above. place: the PNG file.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.5, 4.6), layout="constrained")
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    size = max(1, len(steps) // 120)
+    groups = [slice(i, i + size) for i in range(0, len(steps), size)]
+    middle = [min(g.stop, len(steps)) - (min(g.stop, len(steps)) - g.start) / 2 for g in groups]
+    lengths = [np.asarray(steps[g]) for g in groups]
+    top.fill_between(
+        middle, [np.quantile(x, 0.1) for x in lengths], [np.quantile(x, 0.9) for x in lengths],
+        color="#2b6cb0", alpha=0.18, linewidth=0, label="10 % to 90 %",
+    )  # fmt: skip
+    top.plot(middle, [np.median(x) for x in lengths], color="#2b6cb0", linewidth=1.8, label="median")
+    top.set_ylabel("steps per episode", color=_INK)
+    top.set_ylim(bottom=0)
+    shares = {
+        kind: [float(np.mean(np.asarray(endings[g]) == kind)) for g in groups]
+        for kind in (GOAL, LIMIT, TERMINAL, VIOLATION)
+        if kind in endings
+    }
+    bottom.stackplot(
+        middle,
+        list(shares.values()) or [[0.0] * len(middle)],
+        colors=[_OUTCOME_COLOURS[kind] for kind in shares] or ["white"],
+        labels=[_OUTCOME_NAMES[kind] for kind in shares],
+        alpha=0.85,
+    )
+    bottom.set_ylim(0, 1)
+    bottom.set_ylabel("how they end", color=_INK)
+    bottom.set_xlabel("episode", color=_INK)
+    bottom.set_xlim(0, max(1, len(steps)))
+    _finish_curve(top, bottom, first_success, title)
+    figure.savefig(place, dpi=150)
+
+
+def _finish_curve(top: Any, bottom: Any, first_success: int | None, title: str) -> None:
+    for axes in (top, bottom):
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.tick_params(colors=_MUTED, labelsize=8)
+        if first_success is not None:
+            axes.axvline(first_success, color=_PATH, linewidth=1.5, linestyle="--")
+    if first_success is not None:
+        top.plot([], [], color=_PATH, linestyle="--", label=f"success from episode {first_success} on")
+    top.set_title(title, color=_INK, fontsize=11, pad=8)
+    for axes in (top, bottom):
+        axes.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="upper right")

@@ -1,0 +1,260 @@
+"""Results for people: tables, reasons, the account after learning; and for spreadsheets, CSV.
+
+In: rankings, reward maps, outcomes. Out: text on a stream. rich draws the tables and the progress bar; nothing
+else imports it. The text is plain where the stream is no terminal, and wide enough that nothing is cut off.
+"""
+
+import csv
+import io
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+from rich.table import Table
+from rich.text import Text
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.envs.model import Environment
+from stlspec.formulas import FormulaResult
+from stlspec.learning import Outcome
+from stlspec.rewards import RewardMap
+from stlspec.scores import DemonstrationScore, Ranking, number
+
+Progress = Callable[[int, int, int], None]
+_WIDTH_OF_FILES = 200
+_STYLES = {"good": "green", "incomplete": "yellow", "bad": "red", "satisfied": "green", "violated": "red"}
+_MARKS = {"satisfied": "✓", "violated": "✗", "undecided": "?"}
+
+
+def console_for(stream: TextIO) -> Console:
+    """Return a console for `stream`: of the terminal's width, or wide and plain for files and pipes."""
+    if stream.isatty():
+        return Console(file=stream, highlight=False, soft_wrap=False)
+    return Console(file=stream, highlight=False, width=_WIDTH_OF_FILES, no_color=True)
+
+
+def shown_number(value: float | None) -> str:
+    """Write a number for a table: four significant digits, infinities as ∞."""
+    if value is None:
+        return "–"
+    if abs(value) == float("inf"):
+        return "∞" if value > 0 else "-∞"
+    return f"{value:.4g}"
+
+
+def json_bytes(document: Mapping[str, Any]) -> bytes:
+    """Return a document as the bytes of a JSON file."""
+    return (json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
+
+
+def print_ranking(ranking: Ranking, stream: TextIO) -> None:
+    """Print the ranking as a table, best first, and under it why and when demonstrations fail."""
+    console = console_for(stream)
+    whole = ranking.at is None
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    if whole:
+        table.add_column("rank", justify="right")
+    table.add_column("demonstration", overflow="fold")
+    if whole:
+        table.add_column("label")
+        table.add_column("reward", justify="right")
+    for name, strength, weight, _raw in ranking.requirements:
+        table.add_column(f"{name}\n[dim]{strength} {weight:.3f}[/]", justify="right")
+    for row in _best_first(ranking.demonstrations):
+        cells: list[str | Text] = [_cell(row, name) for name, *_ in ranking.requirements]
+        if whole:
+            label = row.label or "undecided"
+            head: list[str | Text] = [
+                str(row.rank or "–"),
+                Text(row.name),
+                Text(label, _STYLES.get(label, "")),
+                shown_number(row.reward),
+            ]
+        else:
+            head = [Text(row.name)]
+        table.add_row(*head, *cells)
+    console.print(table)
+    _print_reasons(ranking, console)
+
+
+def _best_first(rows: Sequence[DemonstrationScore]) -> list[DemonstrationScore]:
+    return sorted(rows, key=lambda row: -(row.rank or 0))
+
+
+def _cell(row: DemonstrationScore, name: str) -> Text:
+    result = row.requirements[name].result
+    mark = _MARKS[result.verdict.value]
+    vacuous = " ∅" if result.vacuous else ""
+    text = f"{mark} {shown_number(result.robustness)}{vacuous}"
+    return Text(text, _STYLES.get(result.verdict.value, ""))
+
+
+def _print_reasons(ranking: Ranking, console: Console) -> None:
+    lines = []
+    vacuous = False
+    for row in _best_first(ranking.demonstrations):
+        for score in row.requirements.values():
+            if score.reason:
+                lines.append(f"{row.name}: {score.reason}")
+            vacuous = vacuous or score.result.vacuous
+    if lines:
+        console.print()
+        for line in lines:
+            console.print(Text(line))
+    if vacuous:
+        console.print(Text("\n∅ decided by no sample: the trace ends before the window; it counts 0 in the reward"))
+
+
+def ranking_csv(ranking: Ranking) -> str:
+    """Return the scores as CSV, one row for each demonstration and requirement."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        [
+            "demonstration",
+            "label",
+            "reward",
+            "rank",
+            "requirement",
+            "robustness",
+            "bounded",
+            "verdict",
+            "vacuous",
+            "witness_sample",
+            "witness_time",
+        ]
+    )
+    for row in ranking.demonstrations:
+        whole = [row.label, row.reward, row.rank] if ranking.at is None else [None, None, None]
+        for name, score in row.requirements.items():
+            result, witness = score.result, score.result.witness
+            place = [witness.sample, witness.time] if witness else [None, None]
+            vacuous = str(result.vacuous).lower()
+            values = [number(result.robustness), score.bounded, result.verdict.value, vacuous]
+            writer.writerow([row.name, *whole, name, *values, *place])
+    return out.getvalue()
+
+
+def print_reward(reward: RewardMap, file: str, stream: TextIO) -> None:
+    """Print where a reward map went, and what it holds."""
+    values = reward.values
+    console = console_for(stream)
+    if not values:
+        console.print(Text(f"{file}: 0 in every state"))
+        return
+    best = max(zip(values, reward.states, strict=True), key=lambda pair: pair[0])
+    worst = min(values)
+    console.print(
+        Text(
+            f"{file}: {len(values)} states with a reward, from {shown_number(worst)} to {shown_number(best[0])}"
+            f" (at {best[1]}), all others 0"
+        )
+    )
+
+
+def formula_document(formula: str, results: Sequence[FormulaResult]) -> dict[str, Any]:
+    """Return the `stlspec.eval/1` document."""
+    rows = []
+    for row in results:
+        witness = row.result.witness
+        rows.append(
+            {
+                "name": row.name,
+                "robustness": number(row.result.robustness),
+                "verdict": row.result.verdict.value,
+                "vacuous": row.result.vacuous,
+                "witness": {"sample": witness.sample, "time": witness.time} if witness else None,
+            }
+        )
+    return {"schema": "stlspec.eval/1", "formula": formula, "results": rows}
+
+
+def print_formula(results: Sequence[FormulaResult], stream: TextIO) -> None:
+    """Print the value of a formula on each trace, and the sample that decides it."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("trace", "verdict", "robustness", "decided by"):
+        table.add_column(heading, justify="right" if heading == "robustness" else "left", overflow="fold")
+    for row in results:
+        result, witness = row.result, row.result.witness
+        where = f"sample {witness.sample}: {witness.reason}" if witness else result.reason
+        verdict = Text(result.verdict.value, _STYLES.get(result.verdict.value, ""))
+        table.add_row(Text(row.name), verdict, shown_number(result.robustness), Text(where))
+    console_for(stream).print(table)
+
+
+@contextmanager
+def progress(stream: TextIO) -> Iterator[Progress]:
+    """Show episodes and steps as a bar on `stream`; silent where it is no terminal."""
+    console = Console(file=stream)
+    columns = (
+        TextColumn("training"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("episodes, {task.fields[steps]:,} steps"),
+        TimeRemainingColumn(),
+    )
+    with Bar(*columns, console=console, transient=True, disable=not stream.isatty()) as bar:
+        task = bar.add_task("training", total=None, steps=0)
+
+        def show(episode: int, episodes: int, env_steps: int) -> None:
+            bar.update(task, completed=episode, total=episodes, steps=env_steps)
+
+        yield show
+
+
+def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment, out: Path, stream: TextIO) -> None:
+    """Print what was learnt: requirements with margins, the path on the map, the training, the files."""
+    console = console_for(stream)
+    success = "meets every requirement" if outcome.success else "does not meet every requirement"
+    console.print(Text(f"The policy {success}.", "bold green" if outcome.success else "bold yellow"))
+    table = Table(box=None, pad_edge=False, show_header=False)
+    for requirement in bundle.requirements:
+        result = outcome.evaluation[requirement.name]
+        verdict = result.verdict.value
+        mark = Text(f"  {_MARKS[verdict]} {requirement.name}", _STYLES.get(verdict, ""))
+        held = "holds" if verdict == "satisfied" else "fails"
+        margin = f"{held} with robustness {shown_number(result.robustness)}"
+        why = f"decided at sample {result.witness.sample}: {result.witness.reason}" if result.witness else ""
+        table.add_row(mark, requirement.strength, margin, Text(why, "dim"))
+    console.print(table)
+    drawing = path_on_map(environment, outcome.states)
+    if drawing:
+        console.print(Text("\nIts path:\n" + drawing))
+    console.print(Text("\n" + "\n".join(_training_lines(outcome))))
+    for note in outcome.notes:
+        console.print(Text(note))
+    console.print(Text(f"\nFiles in {out}{os.sep}: {', '.join(sorted(outcome.files.values()))}"))
+
+
+def _training_lines(outcome: Outcome) -> list[str]:
+    training = outcome.training
+    lines = [
+        f"{training.episodes:,} episodes, {training.env_steps:,} steps, {training.seconds:.1f} s; "
+        f"{training.hard_violations} hard violations, {training.masked} steps masked"
+        + (f" ({training.prefilled} of them known from bad demonstrations)" if training.prefilled else "")
+    ]
+    if training.env_steps_to_success is not None:
+        lines.append(
+            f"every check succeeds from episode {training.episodes_to_success:,} on "
+            f"({training.env_steps_to_success:,} steps)"
+        )
+    return lines
+
+
+def path_on_map(environment: Environment, states: Sequence[int]) -> str:
+    """Draw a path on the rows of a map: o where it goes, letters of the map elsewhere; "" without a map."""
+    if environment.map is None or environment.n_columns is None:
+        return ""
+    rows = [list(row) for row in environment.map]
+    free = {".", "F"}
+    for state in states:
+        row, column = divmod(state, environment.n_columns)
+        if rows[row][column] in free:
+            rows[row][column] = "o"
+    return "\n".join("  " + " ".join(row) for row in rows)

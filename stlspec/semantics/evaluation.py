@@ -1,0 +1,299 @@
+"""Evaluate a compiled spec on recorded signals.
+
+In: a `BundleData`, signals, time stamps. Out: an immutable `Evaluation`, a mapping from the names of the
+requirements to results. The values of all samples are computed at once; witnesses are looked for when they
+are first asked for, from the result's own copy of the signals, so that the answer cannot change.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cached_property
+from typing import Any, Generic, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.ir import Node
+from stlspec.compiler.printing import number_text
+from stlspec.errors import DataError, UsageError, diagnostic
+from stlspec.semantics.layout import arrange
+from stlspec.semantics.reach import bounded_reach
+from stlspec.semantics.reasons import CONSTANT, VACUOUS, reason_text
+from stlspec.semantics.robustness import evaluate_nodes, shown
+from stlspec.semantics.witness import Decision, decide
+from stlspec.traces import Trace, make_trace
+
+Floats = NDArray[np.float64]
+End = Literal["clip", "strict"]
+Result = TypeVar("Result", covariant=True)
+
+
+class Verdict(StrEnum):
+    """Whether a requirement holds; undecided only where the trace may go on."""
+
+    SATISFIED = "satisfied"
+    VIOLATED = "violated"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """The sample of the predicate that decides a verdict.
+
+    time: of the sample, in the spec's unit. predicate: index of its node. reason: its values in one line.
+    """
+
+    sample: int
+    time: float
+    predicate: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Origin:
+    """What a result was computed from: its requirement's root, the trace(s), the values at all samples."""
+
+    nodes: tuple[Node, ...]
+    root: int
+    trace: Trace
+    values: Floats
+    at: int
+
+    def decision(self) -> Decision:
+        """Look for what decides the value."""
+        return decide(self.nodes, self.root, self.trace, self.at)
+
+    def signal(self) -> Floats:
+        """Return the robustness at every sample, ties as 0; of a batch (n_traces, n_samples)."""
+        signal = np.ascontiguousarray(shown(self.values).T)
+        signal.flags.writeable = False
+        return signal
+
+
+@dataclass(frozen=True, eq=False)
+class RequirementResult:
+    """One requirement on one trace: its robustness and verdict at the reported sample."""
+
+    robustness: float
+    verdict: Verdict
+    origin: Origin = field(repr=False)
+
+    @cached_property
+    def signal(self) -> Floats:
+        """Robustness at every sample, (n_samples,)."""
+        return self.origin.signal()
+
+    @cached_property
+    def witness(self) -> Witness | None:
+        """The deciding sample; None if the value comes from no predicate."""
+        decision, origin = self._decision, self.origin
+        sample, predicate = int(decision.samples[0]), int(decision.predicates[0])
+        if sample < 0:
+            return None
+        reason = reason_text(origin.nodes, predicate, bool(decision.negated[0]), origin.trace, sample)
+        return Witness(sample, origin.trace.time(sample), predicate, reason)
+
+    @cached_property
+    def vacuous(self) -> bool:
+        """Whether the value comes from an empty window or from beyond an end of the trace."""
+        return bool(np.isinf(self.robustness)) and bool(self._decision.vacuous[0])
+
+    @property
+    def reason(self) -> str:
+        """Why the requirement has its value, in one line."""
+        if self.witness is not None:
+            return self.witness.reason
+        return VACUOUS if self.vacuous else CONSTANT
+
+    @cached_property
+    def _decision(self) -> Decision:
+        return self.origin.decision()
+
+
+@dataclass(frozen=True, eq=False)
+class BatchResult:
+    """One requirement on many traces.
+
+    robustness: (n_traces,). satisfied: bool, (n_traces,). parts: for each group of traces with common times
+    the numbers of its traces and its origin. ragged: the traces came as a list of unequal lengths.
+    """
+
+    robustness: Floats
+    satisfied: NDArray[np.bool_]
+    parts: tuple[tuple[tuple[int, ...], Origin], ...] = field(repr=False)
+    ragged: bool = field(default=False, repr=False)
+
+    @cached_property
+    def signal(self) -> Floats | list[Floats]:
+        """Robustness at every sample, (n_traces, n_samples); a list of (n_samples,) for ragged input."""
+        rows: list[Any] = [None] * len(self.robustness)
+        for numbers, origin in self.parts:
+            signal = origin.signal()
+            if not self.ragged and len(self.parts) == 1:
+                return signal
+            for number, row in zip(numbers, signal, strict=True):
+                rows[number] = row
+        return rows if self.ragged else np.stack(rows)
+
+    @cached_property
+    def witness_sample(self) -> NDArray[np.int64]:
+        """The deciding sample of each trace, (n_traces,); -1 if the value comes from no predicate."""
+        return self._scattered([d.samples for d in self._decisions], np.int64)
+
+    @cached_property
+    def vacuous(self) -> NDArray[np.bool_]:
+        """Whether each trace's value comes from an empty window or from beyond an end, (n_traces,)."""
+        return self._scattered([d.vacuous for d in self._decisions], np.bool_)
+
+    @cached_property
+    def _decisions(self) -> list[Decision]:
+        return [origin.decision() for _, origin in self.parts]
+
+    def _scattered(self, pieces: Sequence[NDArray[Any]], kind: type) -> NDArray[Any]:
+        result = np.empty(len(self.robustness), dtype=kind)
+        for (numbers, _), piece in zip(self.parts, pieces, strict=True):
+            result[list(numbers)] = piece
+        result.flags.writeable = False
+        return result
+
+
+class Evaluation(Mapping[str, Result], Generic[Result]):
+    """The results of all requirements by name, in the order of the spec; immutable."""
+
+    __slots__ = ("_results",)
+
+    def __init__(self, results: Mapping[str, Result]) -> None:
+        self._results = dict(results)
+
+    def __getitem__(self, name: str) -> Result:
+        return self._results[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._results)
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def __repr__(self) -> str:
+        return f"Evaluation({self._results!r})"
+
+
+def evaluate(
+    bundle: BundleData,
+    signals: Mapping[str, ArrayLike | Sequence[ArrayLike]],
+    time: ArrayLike | Sequence[ArrayLike] | None = None,
+    end: End = "clip",
+    at: int = 0,
+    file: str | None = None,
+) -> Evaluation[Any]:
+    """Evaluate all requirements on one trace or on many.
+
+    Paper: robustness of STL; the verdict is the Boolean semantics.
+
+    Args:
+        bundle: the compiled spec.
+        signals: for each signal (n_samples,) values for one trace; (n_traces, n_samples), or a list of
+            n_traces sequences of unequal length, for many.
+        time: time stamps in the spec's unit, (n_samples,), or one sequence for each trace.
+        end: "clip" reads a trace as a complete episode; "strict" refuses one shorter than a horizon.
+        at: the sample whose value is reported; negative counts from the end.
+        file: where the data come from, for messages.
+
+    Returns: a `RequirementResult` for each requirement; for many traces a `BatchResult`.
+
+    Raises:
+        DataError: the signals cannot be used, an expression has no value, or a trace is too short.
+        UsageError: `end` or `at` is not possible.
+    """
+    _check_end(end)
+    used = {str(node.value) for node in bundle.nodes if node.op in ("signal", "bool")}
+    layout = arrange([s.name for s in bundle.signals], signals, time, file)
+    traces = [
+        make_trace(bundle.time, bundle.signals, g.signals, g.time, required=used, numbers=g.numbers, file=file)
+        for g in layout.groups
+    ]
+    if traces and traces[0].numbers is None:
+        return evaluate_trace(bundle, traces[0], end, at)
+    return _evaluate_batch(bundle, traces, layout.ragged, end, at)
+
+
+def evaluate_trace(bundle: BundleData, trace: Trace, end: End = "clip", at: int = 0) -> Evaluation[RequirementResult]:
+    """Evaluate all requirements on one trace that was made before; else as `evaluate`."""
+    _check_end(end)
+    results = {}
+    for name, origin in _origins(bundle, trace, end, at).items():
+        value = float(origin.values[origin.at])
+        verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
+        results[name] = RequirementResult(float(shown(np.array(value))), verdict, origin)
+    return Evaluation(results)
+
+
+def _evaluate_batch(
+    bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: End, at: int
+) -> Evaluation[BatchResult]:
+    n_traces = sum(trace.n_traces for trace in traces)
+    origins = [_origins(bundle, trace, end, at) for trace in traces]
+    results = {}
+    for requirement in bundle.requirements:
+        values = np.empty(n_traces)
+        parts = []
+        for trace, by_name in zip(traces, origins, strict=True):
+            origin = by_name[requirement.name]
+            numbers = trace.numbers or ()
+            values[list(numbers)] = origin.values[origin.at]
+            parts.append((numbers, origin))
+        robustness, satisfied = shown(values), values > 0
+        robustness.flags.writeable = satisfied.flags.writeable = False
+        results[requirement.name] = BatchResult(robustness, satisfied, tuple(parts), ragged)
+    return Evaluation(results)
+
+
+def _origins(bundle: BundleData, trace: Trace, end: End, at: int) -> dict[str, Origin]:
+    sample = _sample(trace, at)
+    if end == "strict":
+        _check_length(bundle, trace, sample)
+    roots = [r.root for r in bundle.requirements]
+    values = evaluate_nodes(bundle.nodes, roots, trace)
+    return {
+        r.name: Origin(bundle.nodes, r.root, trace, v, sample) for r, v in zip(bundle.requirements, values, strict=True)
+    }
+
+
+def _sample(trace: Trace, at: int) -> int:
+    n = trace.n_samples
+    if not -n <= at < n:
+        what = f"there is no sample {at}: the trace has {n}"
+        raise UsageError([diagnostic("D880", what=what, help=f"use {-n} to {n - 1}")])
+    return at % n
+
+
+def _check_end(end: str) -> None:
+    if end not in ("clip", "strict"):
+        raise UsageError([diagnostic("D880", what=f"end={end!r}", help="use clip or strict")])
+
+
+def _check_length(bundle: BundleData, trace: Trace, sample: int) -> None:
+    """Refuse a trace that ends before the horizon of a requirement."""
+    length = int(trace.times[-1]) - int(trace.times[sample])
+    reach = bounded_reach(bundle.nodes, bundle.time)
+    errors = [
+        diagnostic(
+            "D809",
+            file=trace.file,
+            requirement=r.name,
+            length=_duration(length, trace),
+            horizon=_duration(reach[r.root], trace),
+        )
+        for r in bundle.requirements
+        if reach[r.root] > length
+    ]
+    if errors:
+        raise DataError(errors)
+
+
+def _duration(ticks: int, trace: Trace) -> str:
+    count = number_text(ticks / trace.ticks_per_unit)
+    plural = "s" if trace.unit == "step" and ticks != 1 else ""
+    return f"{count} {trace.unit}{plural}"

@@ -1,0 +1,107 @@
+"""Specs, maps and demonstrations that the tests of learning share; sweep.py imports them too."""
+
+import json
+import random
+from collections import deque
+from pathlib import Path
+
+import pytest
+
+from stlspec.api import compile
+from stlspec.demos import make_demonstration
+from stlspec.envs.catalogue import make_environment
+
+GRID_SPEC = """
+spec grid "Single-goal grid-world"
+signal d_obs
+signal d_goal
+param T_goal
+let at_goal = d_goal < 1
+hard avoid: always (d_obs >= 1)
+soft reach depends on avoid: eventually at_goal
+soft fast depends on avoid, reach: eventually[0, T_goal] at_goal
+"""
+
+GRIDWORLD = "stlspec/GridWorld-v0"
+FROZENLAKE = "FrozenLake-v1"
+
+
+def grid_bundle(t_goal):
+    return compile(GRID_SPEC, params={"T_goal": t_goal})
+
+
+def grid_rows(size, start, goals, obstacles):
+    rows = [["."] * size for _ in range(size)]
+    for (row, column), mark in [(start, "S"), *((g, "G") for g in goals), *((o, "#") for o in obstacles)]:
+        rows[row][column] = mark
+    return tuple("".join(row) for row in rows)
+
+
+def grid_world(rows):
+    return make_environment(GRIDWORLD, None, rows)
+
+
+def frozen_lake(rows):
+    return make_environment(FROZENLAKE, {"is_slippery": False}, rows)
+
+
+def demonstrations(paths):
+    return [make_demonstration(f"d{i}", states=[list(s) for s in path]) for i, path in enumerate(paths)]
+
+
+def public_items(kind="grid-single"):
+    place = Path(__file__).with_name("public.json")
+    return [item for item in json.loads(place.read_text())["items"] if item["kind"] == kind]
+
+
+def item_parts(item):
+    """Return bundle, environment and demonstrations of a single-goal item."""
+    rows = grid_rows(item["size"], item["start"], item["goals"], item["obstacles"])
+    demos = demonstrations([d["states"] for d in item["demos"]])
+    return grid_bundle(item["t_goal_bfs"]), grid_world(rows), demos
+
+
+def shortest_path(size, start, goal, blocked):
+    """Search breadth first, on cells; None if there is no path."""
+    before, queue = {start: None}, deque([start])
+    while queue:
+        cell = queue.popleft()
+        if cell == goal:
+            path = [cell]
+            while before[path[-1]] is not None:
+                path.append(before[path[-1]])
+            return path[::-1]
+        for dr, dc in ((0, -1), (1, 0), (0, 1), (-1, 0)):
+            after = (cell[0] + dr, cell[1] + dc)
+            inside = 0 <= after[0] < size and 0 <= after[1] < size
+            if inside and after not in blocked and after not in before:
+                before[after] = cell
+                queue.append(after)
+    return None
+
+
+def random_task(size, seed, share=0.15):
+    """Make a map that can be solved, with a good, a roundabout and a bad demonstration; all by the seed."""
+    draw = random.Random(f"{size}/{seed}")
+    start, goal = (size - 1, 0), (0, size - 1)
+    cells = [(r, c) for r in range(size) for c in range(size) if (r, c) not in (start, goal)]
+    while True:
+        blocked = set(draw.sample(cells, max(1, round(share * size * size))))
+        good = shortest_path(size, start, goal, blocked)
+        if good is None:
+            continue
+        through = draw.choice(sorted(set(cells) - blocked))
+        halves = shortest_path(size, start, through, blocked), shortest_path(size, through, goal, blocked)
+        hit = draw.choice(sorted(blocked))
+        bad = shortest_path(size, start, hit, set()), shortest_path(size, hit, goal, set())
+        if None not in halves and goal not in halves[0] and goal not in bad[0]:
+            break
+    paths = [good, halves[0] + halves[1][1:], bad[0] + bad[1][1:]]
+    rows = grid_rows(size, start, [goal], blocked)
+    return grid_bundle(len(good) - 1), grid_world(rows), demonstrations(paths), len(blocked)
+
+
+@pytest.fixture
+def small():
+    """A 5x5 task: bundle, environment, demonstrations."""
+    return item_parts(public_items()[0])
