@@ -230,9 +230,7 @@ def _with_paths(recording: Recording, used: Sequence[Signal], file: str) -> Reco
             entries = (*recording.actions[:1], *recording.actions) if recording.actions else None
         if entries is not None:
             steps = [int(k) if k else name for name, k in _STEP.findall(path[2])]
-            columns[key] = column_of(
-                [_follow(entry, steps, signal, k, file) for k, entry in enumerate(entries)]
-            )
+            columns[key] = column_of([_follow(entry, steps, signal, k, file) for k, entry in enumerate(entries)])
     return replace(recording, columns=columns)
 
 
@@ -302,9 +300,7 @@ def _again(values: Array) -> Array:
     return column_of(values.tolist()) if values.dtype.kind == "O" else values
 
 
-def _with_states(
-    recording: Recording, home: Environment | None, file: str
-) -> tuple[Recording, tuple[Any, ...] | None]:
+def _with_states(recording: Recording, home: Environment | None, file: str) -> tuple[Recording, tuple[Any, ...] | None]:
     """Find states and actions: the states from the columns that make up a state, the actions from the states.
 
     Returns: the recording, completed; its states, as numbers if the environment numbers them.
@@ -322,9 +318,7 @@ def _with_states(
     return recording, tuple(numbers.tolist())
 
 
-def _computed(
-    missing: Sequence[Signal], worlds: Sequence[Environment], states: Any, file: str
-) -> dict[str, Array]:
+def _computed(missing: Sequence[Signal], worlds: Sequence[Environment], states: Any, file: str) -> dict[str, Array]:
     """Let each environment in turn compute the signals that it offers and that are still missing."""
     found: dict[str, Array] = {}
     for world in worlds:

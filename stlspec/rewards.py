@@ -199,9 +199,7 @@ def infer_reward(
     return reward_of(bundle, ranked_states(bundle, demonstrations, environment), environment)
 
 
-def reward_of(
-    bundle: BundleData, ranked: Sequence[RankedStates], environment: Environment | None = None
-) -> RewardMap:
+def reward_of(bundle: BundleData, ranked: Sequence[RankedStates], environment: Environment | None = None) -> RewardMap:
     """Combine what the demonstrations give to states into one map.
 
     Paper: Algorithm 1, line 13. Arguments and errors as for `infer_reward`.

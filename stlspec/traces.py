@@ -7,7 +7,7 @@ rounded here only: from then on every window is found by integer arithmetic, so 
 
 import difflib
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -60,6 +60,12 @@ class Trace:
     def shape(self) -> tuple[int, ...]:
         """Shape of every signal."""
         return (self.n_samples,) if self.numbers is None else (self.n_samples, self.n_traces)
+
+    def columns(self, first: int, end: int) -> "Trace":
+        """Return the traces of a batch from number `first` in it up to `end`."""
+        assert self.numbers is not None
+        parts = {name: np.ascontiguousarray(values[:, first:end]) for name, values in self.signals.items()}
+        return replace(self, signals=parts, numbers=self.numbers[first:end])
 
     def time(self, sample: int) -> float:
         """Return the time of a sample in the spec's unit, as it was given if it was given."""

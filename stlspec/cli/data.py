@@ -60,7 +60,7 @@ def environment_from(env: str | None, args: list[str] | None, map_file: Path | N
                 raise UsageError([diagnostic("D880", what=what, help="name one with `--env ID`")])
         return None
     rows = read_map(map_file) if map_file is not None else None
-    return make_environment(env, parse_env_args(args or []), rows)
+    return make_environment(env, parse_env_args(args or []), rows, file=str(map_file) if map_file else None)
 
 
 def demonstration_environment(
@@ -131,7 +131,6 @@ def reward(
     demonstrations: Data,
     out: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="the reward map to write")],
     params: Params = None,
-    on_nan: OnNanOption = OnNan.REFUSE,
     env: EnvOption = None,
     env_arg: EnvArgs = None,
     map_file: MapOption = None,
@@ -148,7 +147,7 @@ def reward(
     environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
         env, env_arg, map_file
     )
-    found = rewards.infer_reward(bundle, load_demonstrations(demonstrations), environment, on_nan=on_nan.value)
+    found = rewards.infer_reward(bundle, load_demonstrations(demonstrations), environment)
     warn(found.warnings())
     document = found.to_json()
     write_bytes(out, report.json_bytes(document))

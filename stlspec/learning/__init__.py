@@ -3,7 +3,7 @@
 The data flows one way through the modules:
 task (spec and environment as tables over states) and settings -> evidence (demonstrations as a reward map and
 first entries of the mask) -> shaping (what a step pays) -> qstl (training) -> policy (the greedy path) ->
-farming (what goes wrong with the reward as printed) -> outcome -> results, plots, files (the directory of a
+farming (what goes wrong with the reward as printed) -> outcome -> results, plots, storage (the directory of a
 run), with resume for interrupted runs. `training.learn` is the whole line.
 """
 

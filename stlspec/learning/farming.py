@@ -57,6 +57,20 @@ def find_farming(task: Task, path: Sequence[int], reward: Sequence[float], gamma
     )
 
 
+def describe(found: Farming | None, names: Sequence[object]) -> str:
+    """Say in one line whether a policy farms. Not in the paper: the report.
+
+    Args:    found: what `find_farming` gave. names: of the states.
+    """
+    if found is None:
+        return "the greedy path does not farm: it visits no state twice"
+    cycle = " -> ".join(str(names[s]) for s in (*found.cycle, found.cycle[0]))
+    circling = f"the greedy path farms: it circles {cycle} for a discounted return of {found.return_cycle:.4g}"
+    if found.return_goal is None:
+        return f"{circling}; no safe path leads from there to the goal"
+    return f"{circling}, while going to the goal returns {found.return_goal:.4g}"
+
+
 def first_cycle(path: Sequence[int]) -> tuple[int, int]:
     """Return the index at which the first repeated state of a path stands, and the steps until it recurs.
 

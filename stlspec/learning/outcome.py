@@ -12,10 +12,10 @@ from typing import Any
 from stlspec.compiler.bundle import BundleData
 from stlspec.errors import Diagnostic
 from stlspec.learning.farming import Farming
-from stlspec.learning.files import RESULT_SCHEMA
 from stlspec.learning.policy import Policy
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
+from stlspec.learning.storage import RESULT_SCHEMA
 from stlspec.rewards import RewardMap
 from stlspec.scores import number
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
@@ -33,9 +33,7 @@ class Log:
         """Return the text of episodes.csv, episodes from 1."""
         rows = [
             f"{i},{steps},{number(gained)},{ENDINGS[ending]}"
-            for i, (steps, gained, ending) in enumerate(
-                zip(self.steps, self.returns, self.endings, strict=True), 1
-            )
+            for i, (steps, gained, ending) in enumerate(zip(self.steps, self.returns, self.endings, strict=True), 1)
         ]
         return "\n".join(["episode,steps,return,outcome", *rows]) + "\n"
 

@@ -4,9 +4,11 @@ In: tables over states and the log. Out: PNG files, or text where matplotlib is 
 made without pyplot, so that no global state of the host program changes.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +72,7 @@ def draw_reward(scene: Scene, place: Path) -> None:
     else:
         _draw_cells(figure, axes, scene, scene.n_columns)
     axes.set_title(scene.title, color=_INK, fontsize=11, pad=10)
-    figure.savefig(place, dpi=150)
+    figure.savefig(place, dpi=130)
 
 
 def _figure(scene: Scene) -> Any:
@@ -118,16 +120,13 @@ def _write_values(axes: Any, values: Any, limit: float) -> None:
     for (row, column), value in np.ndenumerate(values):
         if value:
             shade = "white" if abs(value) > 0.6 * limit else _INK
-            axes.text(column, row + 0.36, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
+            axes.text(column + 0.45, row + 0.36, f"{value:.2f}", ha="right", va="center", fontsize=6, color=shade)
 
 
 def _draw_obstacle(axes: Any, row: int, column: int) -> None:
     from matplotlib.patches import Rectangle
 
-    box = Rectangle(
-        (column - 0.42, row - 0.42), 0.84, 0.84, facecolor="none", edgecolor=_OBSTACLE, hatch="////", zorder=2
-    )
-    axes.add_patch(box)
+    axes.add_patch(Rectangle((column - 0.24, row - 0.24), 0.48, 0.48, color=_OBSTACLE, linewidth=0, zorder=2))
 
 
 def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
@@ -140,15 +139,8 @@ def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
         axes.plot(columns, rows, marker="*", markersize=18, color="#f2b705", label="goal", **style)
     handles, _ = axes.get_legend_handles_labels()
     handles += _legend_extras()
-    axes.legend(
-        handles=handles,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.12),
-        ncols=4,
-        frameon=False,
-        fontsize=8,
-        labelcolor=_INK,
-    )
+    style = {"loc": "outside lower center", "ncols": 4, "frameon": False, "fontsize": 8, "labelcolor": _INK}
+    axes.figure.legend(handles=handles, handletextpad=0.5, columnspacing=1.4, **style)
 
 
 def _legend_extras() -> list[Any]:
@@ -157,7 +149,7 @@ def _legend_extras() -> list[Any]:
 
     return [
         Line2D([], [], color=_PATH, linewidth=2.5, label="learned path"),
-        Patch(facecolor="none", edgecolor=_OBSTACLE, hatch="////", label="violates"),
+        Patch(color=_OBSTACLE, linewidth=0, label="violates a hard requirement"),
     ]
 
 
@@ -187,9 +179,10 @@ def draw_curve(
 
     figure = Figure(figsize=(7.5, 4.6), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    size = max(1, len(steps) // 120)
-    groups = [slice(i, i + size) for i in range(0, len(steps), size)]
-    middle = [min(g.stop, len(steps)) - (min(g.stop, len(steps)) - g.start) / 2 for g in groups]
+    edges = sorted({0, len(steps), *np.geomspace(1, len(steps), 60).astype(int).tolist()})
+    groups = [slice(first, last) for first, last in pairwise(edges)]
+    # most is learned in the first episodes, so the axis is logarithmic and the groups grow with it
+    middle = [math.sqrt((group.start + 1) * group.stop) for group in groups]
     lengths = [np.asarray(steps[g]) for g in groups]
     top.fill_between(
         middle, [np.quantile(x, 0.1) for x in lengths], [np.quantile(x, 0.9) for x in lengths],
@@ -213,7 +206,9 @@ def draw_curve(
     bottom.set_ylim(0, 1)
     bottom.set_ylabel("how they end", color=_INK)
     bottom.set_xlabel("episode", color=_INK)
-    bottom.set_xlim(0, max(1, len(steps)))
+    bottom.set_xscale("log")
+    bottom.xaxis.set_major_formatter("{x:.0f}")
+    bottom.set_xlim(1, max(2, len(steps)))
     _finish_curve(top, bottom, first_success, title)
     figure.savefig(place, dpi=150)
 
@@ -227,5 +222,5 @@ def _finish_curve(top: Any, bottom: Any, first_success: int | None, title: str) 
     if first_success is not None:
         top.plot([], [], color=_PATH, linestyle="--", label=f"success from episode {first_success} on")
     top.set_title(title, color=_INK, fontsize=11, pad=8)
-    for axes in (top, bottom):
-        axes.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="upper right")
+    top.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="best")
+    bottom.legend(framealpha=0.9, edgecolor="white", fontsize=8, labelcolor=_INK, loc="center right")

@@ -177,10 +177,8 @@ def run_paper_episodes(learner: Learner, count: int, random: np.random.Generator
                 numbers = random.random(_BLOCK).tolist()
             uniform = numbers.pop()
             row = q[state]
-            if uniform < settings.epsilon:
-                action = int(uniform / settings.epsilon * len(row))
-            else:
-                action = row.index(max(row))
+            explore = uniform < settings.epsilon
+            action = int(uniform / settings.epsilon * len(row)) if explore else row.index(max(row))
             after = transitions[state][action]
             lows = [min(low, now) for low, now in zip(lows, robustness[after], strict=True)]
             gained = reward[after] + feedback(lows)

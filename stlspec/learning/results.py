@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.envs.model import Environment
-from stlspec.learning import files, plots
+from stlspec.learning import plots, storage
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.policy import FILE as POLICY
 from stlspec.learning.task import Task
@@ -19,14 +19,12 @@ from stlspec.learning.task import Task
 Writer = Callable[[Path], object]
 
 
-def publish(
-    outcome: Outcome, task: Task, environment: Environment, bundle: BundleData, directory: Path
-) -> Outcome:
+def publish(outcome: Outcome, task: Task, environment: Environment, bundle: BundleData, directory: Path) -> Outcome:
     """Write the results of a run into its directory, and name them in the outcome.
 
     Not in the paper: the output of the command.
 
-    Args:    directory: as `files.claim` returned it.
+    Args:    directory: as `storage.claim` returned it.
     Returns: the outcome with `files` filled in.
     Raises:  UsageError D872: the directory cannot be written.
     """
@@ -38,23 +36,23 @@ def publish(
         path=outcome.states,
         n_columns=environment.n_columns,
     )
-    named = {"result": files.RESULT, "policy": POLICY, "reward": "reward.json", "log": "episodes.csv"}
+    named = {"result": storage.RESULT, "policy": POLICY, "reward": "reward.json", "log": "episodes.csv"}
     if plots.available():
         named |= {"reward_map": "reward.png", "curve": "curve.png"}
     else:
         named["reward_map"] = "reward.txt"
     outcome = replace(outcome, files=MappingProxyType(named))
     writers: dict[str, Writer] = {
-        named["result"]: _text(files.dumps(outcome.to_json(), indent=2)),
-        named["policy"]: _text(files.dumps(outcome.policy.to_json())),
-        named["reward"]: _text(files.dumps(outcome.reward.to_json())),
+        named["result"]: _text(storage.dumps(outcome.to_json())),
+        named["policy"]: _text(storage.dumps(outcome.policy.to_json())),
+        named["reward"]: _text(storage.dumps(outcome.reward.to_json())),
         named["log"]: _text(outcome.log.to_csv()),
         named["reward_map"]: _text(plots.reward_text(scene)),
     }
     if "curve" in named:
         writers[named["reward_map"]] = lambda place: plots.draw_reward(scene, place)
         writers[named["curve"]] = lambda place: _draw_curve(outcome, bundle, place)
-    files.publish(directory, writers)
+    storage.publish(directory, writers)
     return outcome
 
 

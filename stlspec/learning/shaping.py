@@ -67,7 +67,7 @@ def moves(
             ending = endings[after]
             reward = base_reward(ending, step_cost)
             if potentials is not None:
-                ahead = potentials[after] if ending == RUNS else 0.0
+                ahead = potentials[after] if ending == RUNS else 0
                 reward = shaped_reward(reward, potentials[state], ahead, gamma)
             out.append((after, reward, ending))
         table.append(out)

@@ -253,9 +253,7 @@ def signal_sources(bundle: BundleData, needed: set[str], environment: Environmen
         if not names:
             offered = ", ".join(environment.signal_names) or "no signals"
             user = f"spec '{bundle.name}'"
-            raise UsageError(
-                [diagnostic("D870", env=environment.id, signal=signal.name, user=user, offered=offered)]
-            )
+            raise UsageError([diagnostic("D870", env=environment.id, signal=signal.name, user=user, offered=offered)])
         found[signal.name] = str(names[0])
     return found
 

@@ -14,9 +14,9 @@ from typing import Any
 from stlspec.compiler.bundle import BundleData
 from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
-from stlspec.learning import files, resume
+from stlspec.learning import resume, storage
 from stlspec.learning.evidence import Evidence, gather, notes
-from stlspec.learning.farming import find_farming
+from stlspec.learning.farming import describe, find_farming
 from stlspec.learning.outcome import Log, Outcome, Training, meets
 from stlspec.learning.policy import Policy, greedy_action, greedy_path
 from stlspec.learning.qstl import CHUNK, Learner, run_chunk
@@ -77,7 +77,7 @@ def learn(
     if settings.mask:
         learner.forbid(evidence.violating)
     prefilled = learner.masked
-    directory = None if out is None else files.claim(out)
+    directory = None if out is None else storage.claim(out)
     key = resume.fingerprint(bundle, environment, learner, evidence.violating)
     position = train(learner, judge, directory, key, progress)
     outcome = conclude(learner, judge, environment, evidence, position, prefilled)
@@ -120,11 +120,9 @@ def train(
     Returns: all checks, and the seconds spent, those before an interruption included.
     """
     task, settings = learner.task, learner.settings
-    state = None if directory is None else files.load_checkpoint(directory, key)
+    state = None if directory is None else storage.load_checkpoint(directory, key)
     position = None if state is None else resume.restore(learner, state)
-    chunks, checks, spent = (
-        (position.chunks, [*position.checks], position.seconds) if position else (0, [], 0.0)
-    )
+    chunks, checks, spent = (position.chunks, [*position.checks], position.seconds) if position else (0, [], 0.0)
     began = saved = time.perf_counter()
     pause = CHECKPOINT_SECONDS
     while chunks * CHUNK < settings.episodes:
@@ -135,7 +133,7 @@ def train(
         now = time.perf_counter()
         if directory is not None and now - saved >= pause and chunks * CHUNK < settings.episodes:
             position = resume.Position(chunks, tuple(checks), spent + now - began)
-            files.save_checkpoint(directory, key, resume.to_state(learner, position))
+            storage.save_checkpoint(directory, key, resume.to_state(learner, position))
             saved = time.perf_counter()
             pause = max(CHECKPOINT_SECONDS, 20 * (saved - now))
         if progress is not None:
@@ -185,9 +183,11 @@ def conclude(
         prefilled=prefilled,
         seconds=position.seconds,
     )
-    farming = None
+    policy = make_policy(learner, environment)
+    remarks, farming = notes(evidence, settings.method, settings.mask), None
     if settings.method == "paper":
         farming = find_farming(task, path, learner.reward, settings.gamma)
+        remarks = (*remarks, describe(farming, policy.states))
     return Outcome(
         settings=settings,
         success=meets(judge.bundle, evaluation),
@@ -197,13 +197,13 @@ def conclude(
         evaluation=evaluation,
         meets_hard=meets(judge.bundle, evaluation, hard_only=True),
         training=training,
-        policy=make_policy(learner, environment),
+        policy=policy,
         reward=evidence.reward,
         log=Log(tuple(learner.steps), tuple(learner.returns), tuple(learner.outcomes)),
         checks=position.checks,
         farming=farming,
-        warnings=evidence.warnings,
-        notes=notes(evidence, settings.method, settings.mask),
+        warnings=() if settings.method == "plain" else evidence.warnings,
+        notes=remarks,
     )
 
 

@@ -49,9 +49,7 @@ def decode(text: str, file: Path, line: int = 1) -> Any:
     except ValueError:
         # Python refuses to convert whole numbers of more than 4300 digits.
         hint = 'write it as 1e999 or "inf" if it stands for infinity'
-        raise refusal(
-            "D836", file, format="JSON", reason="a number is too long", where=_on(line), help=hint
-        ) from None
+        raise refusal("D836", file, format="JSON", reason="a number is too long", where=_on(line), help=hint) from None
 
 
 def recording_of(document: Any, file: Path, place: str = "the demonstration") -> Recording:
@@ -66,9 +64,7 @@ def recording_of(document: Any, file: Path, place: str = "the demonstration") ->
         raise _wrong(file, place, document, "an object", _OBJECT)
     schema = document.get("schema", SCHEMA)
     if schema != SCHEMA:
-        raise _wrong(
-            file, f"'schema' of {place}", schema, f"'{SCHEMA}'", "this file is of another kind or version"
-        )
+        raise _wrong(file, f"'schema' of {place}", schema, f"'{SCHEMA}'", "this file is of another kind or version")
     signals, states = document.get("signals"), document.get("states")
     if signals is None and states is None:
         keys = ", ".join(map(repr, list(document)[:8])) or "nothing"

@@ -186,9 +186,7 @@ def checked(recording: Recording, file: Path) -> Recording:
     ]
     if not problems and recording.actions is not None and len(recording.actions) != lengths[first] - 1:
         problems.append(
-            diagnostic(
-                "D839", file=str(file), length=len(recording.actions), samples=f"{lengths[first]} samples"
-            )
+            diagnostic("D839", file=str(file), length=len(recording.actions), samples=f"{lengths[first]} samples")
         )
     if problems:
         raise DataError(problems)

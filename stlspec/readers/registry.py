@@ -52,6 +52,4 @@ def _reader(path: Path) -> Reader:
     known = sorted({*BUILT_IN, *added})
     close = difflib.get_close_matches(suffix, known, 1)
     hint = f"did you mean .{close[0]}? " if close else ""
-    raise refusal(
-        "D831", path, suffix=path.suffix, help=hint + "known are " + ", ".join(f".{x}" for x in known)
-    )
+    raise refusal("D831", path, suffix=path.suffix, help=hint + "known are " + ", ".join(f".{x}" for x in known))

@@ -21,7 +21,7 @@ from stlspec.errors import DataError, UsageError, diagnostic
 from stlspec.semantics.layout import arrange
 from stlspec.semantics.reach import bounded_reach
 from stlspec.semantics.reasons import CONSTANT, VACUOUS, reason_text
-from stlspec.semantics.robustness import evaluate_nodes, shown
+from stlspec.semantics.robustness import batches, evaluate_at, evaluate_nodes, shown
 from stlspec.semantics.witness import Decision, decide
 from stlspec.traces import Trace, make_trace
 
@@ -53,37 +53,48 @@ class Witness:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Origin:
-    """What a result was computed from: its requirement's root, the trace(s), the values at all samples."""
+    """What a result was computed from: a requirement's root, the trace or batch, the reported sample."""
 
     nodes: tuple[Node, ...]
     root: int
     trace: Trace
-    values: Floats
     at: int
 
-    def decision(self) -> Decision:
-        """Look for what decides the value."""
-        return decide(self.nodes, self.root, self.trace, self.at)
+    def decisions(self) -> list[Decision]:
+        """Look for what decides the value; a batch in parts of bounded size."""
+        parts = [self.trace] if self.trace.numbers is None else [p for _, p in batches(self.trace)]
+        return [decide(self.nodes, self.root, part, self.at) for part in parts]
 
     def signal(self) -> Floats:
-        """Return the robustness at every sample, ties as 0; of a batch (n_traces, n_samples)."""
-        signal = np.ascontiguousarray(shown(self.values).T)
-        signal.flags.writeable = False
-        return signal
+        """Return the robustness of a batch at every sample, ties as 0, (n_traces, n_samples)."""
+        signal = np.empty((self.trace.n_traces, self.trace.n_samples))
+        for first, part in batches(self.trace):
+            (values,) = evaluate_nodes(self.nodes, [self.root], part)
+            signal[first : first + part.n_traces] = shown(values).T
+        return _frozen(signal)
+
+
+def _frozen(values: NDArray[Any]) -> NDArray[Any]:
+    values.flags.writeable = False
+    return values
 
 
 @dataclass(frozen=True, eq=False)
 class RequirementResult:
-    """One requirement on one trace: its robustness and verdict at the reported sample."""
+    """One requirement on one trace: its robustness and verdict at the reported sample.
+
+    values: the robustness at every sample, ties told apart as `robustness.TIE` says.
+    """
 
     robustness: float
     verdict: Verdict
     origin: Origin = field(repr=False)
+    values: Floats = field(repr=False)
 
     @cached_property
     def signal(self) -> Floats:
         """Robustness at every sample, (n_samples,)."""
-        return self.origin.signal()
+        return _frozen(shown(self.values))
 
     @cached_property
     def witness(self) -> Witness | None:
@@ -109,54 +120,50 @@ class RequirementResult:
 
     @cached_property
     def _decision(self) -> Decision:
-        return self.origin.decision()
+        return self.origin.decisions()[0]
 
 
 @dataclass(frozen=True, eq=False)
 class BatchResult:
     """One requirement on many traces.
 
-    robustness: (n_traces,). satisfied: bool, (n_traces,). parts: for each group of traces with common times
-    the numbers of its traces and its origin. ragged: the traces came as a list of unequal lengths.
+    robustness: (n_traces,). satisfied: bool, (n_traces,). origins: one for each group of traces with common
+    times. ragged: the traces came as a list of unequal lengths.
     """
 
     robustness: Floats
     satisfied: NDArray[np.bool_]
-    parts: tuple[tuple[tuple[int, ...], Origin], ...] = field(repr=False)
+    origins: tuple[Origin, ...] = field(repr=False)
     ragged: bool = field(default=False, repr=False)
 
     @cached_property
     def signal(self) -> Floats | list[Floats]:
         """Robustness at every sample, (n_traces, n_samples); a list of (n_samples,) for ragged input."""
-        rows: list[Any] = [None] * len(self.robustness)
-        for numbers, origin in self.parts:
-            signal = origin.signal()
-            if not self.ragged and len(self.parts) == 1:
-                return signal
-            for number, row in zip(numbers, signal, strict=True):
-                rows[number] = row
-        return rows if self.ragged else np.stack(rows)
+        signals = [origin.signal() for origin in self.origins]
+        if len(signals) == 1 and not self.ragged:
+            return signals[0]
+        rows: dict[int, Floats] = {}
+        for origin, signal in zip(self.origins, signals, strict=True):
+            rows.update(zip(origin.trace.numbers or (), signal, strict=True))
+        ordered = [rows[number] for number in range(len(rows))]
+        return ordered if self.ragged else _frozen(np.stack(ordered))
 
     @cached_property
     def witness_sample(self) -> NDArray[np.int64]:
         """The deciding sample of each trace, (n_traces,); -1 if the value comes from no predicate."""
-        return self._scattered([d.samples for d in self._decisions], np.int64)
+        return self._scattered([d.samples for d in self._decisions])
 
     @cached_property
     def vacuous(self) -> NDArray[np.bool_]:
         """Whether each trace's value comes from an empty window or from beyond an end, (n_traces,)."""
-        return self._scattered([d.vacuous for d in self._decisions], np.bool_)
+        return self._scattered([d.vacuous for d in self._decisions])
 
     @cached_property
     def _decisions(self) -> list[Decision]:
-        return [origin.decision() for _, origin in self.parts]
+        return [decision for origin in self.origins for decision in origin.decisions()]
 
-    def _scattered(self, pieces: Sequence[NDArray[Any]], kind: type) -> NDArray[Any]:
-        result = np.empty(len(self.robustness), dtype=kind)
-        for (numbers, _), piece in zip(self.parts, pieces, strict=True):
-            result[list(numbers)] = piece
-        result.flags.writeable = False
-        return result
+    def _scattered(self, pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:
+        return _frozen(_in_order([origin.trace for origin in self.origins], np.concatenate(pieces)))
 
 
 class Evaluation(Mapping[str, Result], Generic[Result]):
@@ -222,43 +229,43 @@ def evaluate(
 def evaluate_trace(bundle: BundleData, trace: Trace, end: End = "clip", at: int = 0) -> Evaluation[RequirementResult]:
     """Evaluate all requirements on one trace that was made before; else as `evaluate`."""
     _check_end(end)
+    sample = _sample(trace, at)
+    if end == "strict":
+        _check_length(bundle, trace, sample)
+    roots = [r.root for r in bundle.requirements]
     results = {}
-    for name, origin in _origins(bundle, trace, end, at).items():
-        value = float(origin.values[origin.at])
+    for r, values in zip(bundle.requirements, evaluate_nodes(bundle.nodes, roots, trace), strict=True):
+        value = values[sample]
         verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
-        results[name] = RequirementResult(float(shown(np.array(value))), verdict, origin)
+        origin = Origin(bundle.nodes, r.root, trace, sample)
+        results[r.name] = RequirementResult(float(shown(value)), verdict, origin, values)
     return Evaluation(results)
 
 
 def _evaluate_batch(
     bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: End, at: int
 ) -> Evaluation[BatchResult]:
-    n_traces = sum(trace.n_traces for trace in traces)
-    origins = [_origins(bundle, trace, end, at) for trace in traces]
+    samples = [_sample(trace, at) for trace in traces]
+    if end == "strict":
+        for trace, sample in zip(traces, samples, strict=True):
+            _check_length(bundle, trace, sample)
+    roots = [r.root for r in bundle.requirements]
+    parts = [evaluate_at(bundle.nodes, roots, t, s) for t, s in zip(traces, samples, strict=True)]
+    values = _in_order(traces, np.concatenate(parts, axis=1))
     results = {}
-    for requirement in bundle.requirements:
-        values = np.empty(n_traces)
-        parts = []
-        for trace, by_name in zip(traces, origins, strict=True):
-            origin = by_name[requirement.name]
-            numbers = trace.numbers or ()
-            values[list(numbers)] = origin.values[origin.at]
-            parts.append((numbers, origin))
-        robustness, satisfied = shown(values), values > 0
-        robustness.flags.writeable = satisfied.flags.writeable = False
-        results[requirement.name] = BatchResult(robustness, satisfied, tuple(parts), ragged)
+    for requirement, of_root in zip(bundle.requirements, values, strict=True):
+        origins = tuple(
+            Origin(bundle.nodes, requirement.root, trace, sample) for trace, sample in zip(traces, samples, strict=True)
+        )
+        robustness, satisfied = _frozen(shown(of_root)), _frozen(of_root > 0)
+        results[requirement.name] = BatchResult(robustness, satisfied, origins, ragged)
     return Evaluation(results)
 
 
-def _origins(bundle: BundleData, trace: Trace, end: End, at: int) -> dict[str, Origin]:
-    sample = _sample(trace, at)
-    if end == "strict":
-        _check_length(bundle, trace, sample)
-    roots = [r.root for r in bundle.requirements]
-    values = evaluate_nodes(bundle.nodes, roots, trace)
-    return {
-        r.name: Origin(bundle.nodes, r.root, trace, v, sample) for r, v in zip(bundle.requirements, values, strict=True)
-    }
+def _in_order(traces: Sequence[Trace], values: NDArray[Any]) -> NDArray[Any]:
+    """Bring values, one for each trace along the last axis, into the order of the traces' numbers."""
+    numbers = [number for trace in traces for number in trace.numbers or ()]
+    return values[..., np.argsort(numbers)]
 
 
 def _sample(trace: Trace, at: int) -> int:

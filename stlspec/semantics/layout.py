@@ -102,7 +102,7 @@ def _by_length_and_time(columns: Mapping[str, Any], time: Any, file: str | None)
             )
             for numbers in groups.values()
         ),
-        ragged=len(lengths) > 1 or any(isinstance(rows, (list, tuple)) for rows in columns.values()),
+        ragged=len(lengths) > 1,
     )
 
 

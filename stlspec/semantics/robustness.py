@@ -7,7 +7,7 @@ and non-strict comparisons kept apart, and no value is 0. `shown` turns ties int
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ _TEMPORAL: dict[str, Callable[..., Floats]] = {
     "once": windows.once,
     "since": windows.since,
 }
+# Of a batch this many numbers of a signal are evaluated at a time.
+_BATCH = 2**18
 _HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})
 
 
@@ -45,11 +47,45 @@ def evaluate_nodes(nodes: Sequence[Node], roots: Sequence[int], trace: Trace) ->
              `TIE` or -`TIE`: see `shown`.
     Raises:  DataError: a real expression is not a number at some sample.
     """
+    return _evaluate(nodes, roots, trace, [])
+
+
+def evaluate_at(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, at: int) -> Floats:
+    """Evaluate formulas at one sample of every trace of a batch.
+
+    Paper: as `evaluate_nodes`. The traces are taken some at a time, in arrays that are used again, so that
+    memory does not grow with the batch.
+
+    Args:    nodes, roots, trace: as `evaluate_nodes`. at: a sample.
+    Returns: (n_roots, n_traces), ties as `TIE` or -`TIE`.
+    Raises:  DataError: a real expression is not a number at some sample.
+    """
+    result = np.empty((len(roots), trace.n_traces))
+    spare: list[Floats] = []
+    for first, part in batches(trace):
+        if spare and spare[0].shape != part.shape:
+            spare = []
+        values = _evaluate(nodes, roots, part, spare)
+        for row, of_root in zip(result, values, strict=True):
+            row[first : first + part.n_traces] = of_root[at]
+        spare += {id(v): v for i, v in zip(roots, values, strict=True) if nodes[i].op not in REAL}.values()
+    return result
+
+
+def batches(trace: Trace) -> Iterator[tuple[int, Trace]]:
+    """Cut a batch into smaller ones of bounded size; with each the column where it begins."""
+    count = -(-trace.n_samples * trace.n_traces // _BATCH)
+    width = -(-trace.n_traces // count)
+    for first in range(0, trace.n_traces, width):
+        yield first, trace.columns(first, first + width)
+
+
+def _evaluate(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, spare: list[Floats]) -> list[Floats]:
+    """Evaluate `roots`; `spare` holds arrays to write to, and takes those that are no longer needed."""
     needed = needed_nodes(nodes, roots)
     uses = Counter(c for i in needed for c in nodes[i].children)
     uses.update(roots)
     grid = Grid(trace.times, trace.spacing)
-    spare: list[Floats] = []
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):
         for index in needed:
@@ -66,7 +102,7 @@ def evaluate_nodes(nodes: Sequence[Node], roots: Sequence[int], trace: Trace) ->
                     freed = values.pop(child)
                     if nodes[child].op not in REAL:
                         spare.append(freed)
-    return [np.broadcast_to(values[root], trace.shape) for root in roots]
+    return [values[r] if nodes[r].op not in REAL else np.broadcast_to(values[r], trace.shape) for r in roots]
 
 
 def needed_nodes(nodes: Sequence[Node], roots: Sequence[int]) -> list[int]:

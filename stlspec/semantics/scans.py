@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _SMALL = 4096
-_MANY_TRACES = 512
+_MANY_TRACES = 128
 
 
 def suffix_extremum(extremum: np.ufunc, values: Floats, out: Floats) -> None:

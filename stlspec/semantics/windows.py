@@ -178,7 +178,7 @@ def _whole_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) 
     """Slide windows of `width` samples, none cut off, block by block."""
     n, k = out.shape
     rows = min(n, max(3 * width, _BLOCK // k))
-    columns = min(k, max(8, _BLOCK // (rows + width)))
+    columns = min(k, max(8, -(-k // max(1, round(k * (rows + width) / _BLOCK)))))
     buffers = np.empty((2, (rows + width) * columns))
     for left in range(0, k, columns):
         for top in range(0, n, rows):

@@ -4,10 +4,10 @@ import json
 import random
 from collections import deque
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-
-from stlspec.api import compile
+from stlspec import api
 from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
 
@@ -27,7 +27,7 @@ FROZENLAKE = "FrozenLake-v1"
 
 
 def grid_bundle(t_goal):
-    return compile(GRID_SPEC, params={"T_goal": t_goal})
+    return api.compile(GRID_SPEC, params={"T_goal": t_goal})
 
 
 def grid_rows(size, start, goals, obstacles):
@@ -101,7 +101,21 @@ def random_task(size, seed, share=0.15):
     return grid_bundle(len(good) - 1), grid_world(rows), demonstrations(paths), len(blocked)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def kit():
+    """The helpers of this file, for test modules, which cannot import it."""
+    return SimpleNamespace(
+        grid_bundle=grid_bundle,
+        grid_world=grid_world,
+        frozen_lake=frozen_lake,
+        demonstrations=demonstrations,
+        public_items=public_items,
+        item_parts=item_parts,
+        random_task=random_task,
+    )
+
+
+@pytest.fixture(scope="session")
 def small():
     """A 5x5 task: bundle, environment, demonstrations."""
     return item_parts(public_items()[0])

@@ -21,9 +21,9 @@ _LARGEST_RESULT = 64 * 2**20
 _LARGEST_CHECKPOINT = 2**30
 
 
-def dumps(document: Any, *, indent: int | None = None) -> str:
+def dumps(document: Any) -> str:
     """Return JSON text; a number that is not finite must have been replaced by a string before."""
-    return json.dumps(document, allow_nan=False, ensure_ascii=False, indent=indent)
+    return json.dumps(document, allow_nan=False, ensure_ascii=False)
 
 
 def claim(out: str | Path) -> Path:
@@ -34,6 +34,8 @@ def claim(out: str | Path) -> Path:
     Raises:  UsageError D872: it exists and is neither empty nor an earlier run, or cannot be written.
     """
     path = Path(os.path.realpath(out))
+    if not path.name:
+        raise _refused(out, "is no directory of its own")
     partial = partial_directory(path)
     try:
         if (partial / "old").is_dir() and not path.exists():
@@ -46,7 +48,9 @@ def claim(out: str | Path) -> Path:
             raise _refused(out, "exists and is not a directory")
         if partial.exists() and not partial.is_dir():
             raise _refused(f"{out}.partial", "is where an unfinished run is kept, and is not a directory")
+        # made and removed: a place that cannot be written to should be known before training
         partial.mkdir(parents=True, exist_ok=True)
+        _remove_if_empty(partial)
     except OSError as error:
         raise _refused(out, f"cannot be written: {error.strerror or error}") from None
     return path
@@ -100,6 +104,10 @@ def discard(out: Path) -> None:
     """Remove the checkpoint of a run, and its directory if nothing else is in it."""
     partial = partial_directory(out)
     (partial / "checkpoint.json").unlink(missing_ok=True)
+    _remove_if_empty(partial)
+
+
+def _remove_if_empty(partial: Path) -> None:
     if partial.is_dir() and not any(partial.iterdir()):
         partial.rmdir()
 

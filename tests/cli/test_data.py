@@ -1,0 +1,120 @@
+"""score, reward and eval: tables, documents and gates."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from stlspec.cli.main import run
+
+SPECS = Path(__file__).parents[2] / "specs"
+GRID = str(SPECS / "grid_single_goal.stl")
+DEMOS = str(SPECS / "demos" / "grid_5x5.jsonl")
+GOOD = "d_obs,d_goal\n2,3\n1,2\n1,1\n2,0\n"
+BAD = "d_obs,d_goal\n2,3\n1,2\n3,1\n0,0\n"
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> list[str]:
+    good, bad = tmp_path / "good.csv", tmp_path / "bad.csv"
+    good.write_text(GOOD)
+    bad.write_text(BAD)
+    return [str(good), str(bad)]
+
+
+def test_the_table_gives_the_reason_for_each_failure(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, *files]) == 0
+    out = capsys.readouterr().out
+    assert f"{files[1]}: avoid fails at sample 3: d_obs = 0, needs >= 1" in out
+    assert out.index(files[0]) < out.index(files[1])
+
+
+def test_the_document_follows_the_contract(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, *files, "--format", "json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["schema"] == "stlspec.score/1"
+    assert [r["raw_weight"] for r in document["requirements"]] == [3, 2, 1]
+    good, bad = document["demonstrations"]
+    assert (good["label"], good["rank"], bad["label"], bad["rank"]) == ("good", 2, "bad", 1)
+    assert bad["requirements"]["avoid"]["witness"] == {"sample": 3, "time": 3.0}
+    assert good["requirements"]["avoid"] == {
+        "robustness": 0.0,
+        "bounded": 0.0,
+        "verdict": "satisfied",
+        "vacuous": False,
+        "witness": {"sample": 1, "time": 1.0},
+    }
+
+
+def test_at_gives_the_values_of_one_sample(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, files[0], "--at", "-1", "--format", "json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["demonstrations"]
+    assert row.keys() == {"name", "requirements"}
+    assert row["requirements"]["avoid"]["robustness"] == 1.0
+
+
+def test_csv_has_a_row_for_each_requirement(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, *files, "--format", "csv"]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert len(rows) == 6
+    assert rows[3]["requirement"] == "avoid"
+    assert float(rows[3]["robustness"]) == -1.0
+
+
+@pytest.mark.parametrize(
+    ("which", "gate", "params", "expected"),
+    [
+        (0, "hard", [], 0),
+        (0, "all", [], 0),
+        (0, "all", ["-p", "T_goal=2"], 1),
+        (0, "hard", ["-p", "T_goal=2"], 0),
+        (1, "hard", [], 1),
+    ],
+)
+def test_a_gate_turns_a_failure_into_exit_1(
+    files: list[str], which: int, gate: str, params: list[str], expected: int
+) -> None:
+    assert run(["score", GRID, files[which], "--require", gate, *params]) == expected
+
+
+def test_strict_refuses_what_ends_before_the_horizon(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, files[0], "--end", "strict"]) == 2
+    assert "D809" in capsys.readouterr().err
+    assert run(["score", GRID, files[0], "--end", "strict", "-p", "T_goal=3"]) == 0
+
+
+def test_nan_is_held_or_dropped_on_demand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("d_obs,d_goal\n2,3\nnan,2\n1,0\n")
+    assert run(["score", GRID, str(log)]) == 2
+    assert "signal 'd_obs' is NaN at sample 1" in capsys.readouterr().err
+    assert run(["score", GRID, str(log), "--on-nan", "hold"]) == 0
+    assert run(["score", GRID, str(log), "--on-nan", "drop"]) == 0
+
+
+def test_reward_writes_the_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "R.json"
+    assert run(["reward", GRID, DEMOS, "-o", str(out)]) == 0
+    document = json.loads(out.read_text())
+    assert document["schema"] == "stlspec.reward/1"
+    values = dict(zip(map(tuple, document["states"]), document["values"], strict=True))
+    assert max(map(abs, values.values())) == 1.0
+    assert values[(0, 4)] > 0 > values[(3, 1)]
+    assert "states with a reward" in capsys.readouterr().out
+
+
+def test_eval_needs_no_spec_and_exits_with_1_if_violated(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["eval", "G (d_obs >= 1)", files[0]]) == 0
+    assert run(["eval", "G (d_obs >= 1)", *files, "--format", "json"]) == 1
+    document = json.loads(capsys.readouterr().out.split("\n", 2)[2])
+    assert [r["verdict"] for r in document["results"]] == ["satisfied", "violated"]
+
+
+def test_eval_points_into_the_formula(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["eval", "always[5, 2] (d_obs > 0)", files[0]]) == 1
+    err = capsys.readouterr().err
+    assert "<formula>:1:7" in err
+    assert run(["eval", "always (d_obs > 0", files[0]]) == 1
+    assert run(["eval", "always (d_ops > 0)", files[0]]) == 2

@@ -1,0 +1,87 @@
+"""learn from the command line: files, the account, gates, and what is refused."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from stlspec.cli.main import run
+
+SPECS = Path(__file__).parents[2] / "specs"
+SPEC = str(SPECS / "grid_single_goal.stl")
+DEMOS = str(SPECS / "demos" / "grid_5x5.jsonl")
+WORLD = ["--env", "stlspec/GridWorld-v0", "--map", str(SPECS / "maps" / "grid_5x5.txt")]
+SHORT = ["--episodes", "600"]
+
+
+def test_learn_writes_a_policy_and_says_what_it_meets(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "run"
+    assert run(["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(out)]) == 0
+    text = capsys.readouterr().out
+    assert "meets every requirement" in text
+    assert "✓ avoid" in text
+    assert "S o" in text or "o . # . #" in text
+    result = json.loads((out / "result.json").read_text())
+    assert (result["schema"], result["success"], result["method"]) == ("stlspec.learn/1", True, "shaped")
+    assert result["policy"]["states"][-1] == [0, 4]
+    episodes = (out / "episodes.csv").read_text().splitlines()
+    assert len(episodes) == 601
+    assert not (tmp_path / "run.partial").exists()
+
+
+def test_the_document_on_stdout_is_the_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "run"
+    words = ["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(out), "--format", "json"]
+    assert run(words) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads((out / "result.json").read_text())
+
+
+def test_the_same_seed_gives_the_same_bits(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        words = ["learn", SPEC, *WORLD, *SHORT, "--seed", "5", "--demos", DEMOS, "--out", str(tmp_path / name)]
+        assert run(words) == 0
+    for file in ("policy.json", "episodes.csv", "reward.json"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_a_policy_that_breaks_a_hard_requirement_is_exit_1(tmp_path: Path) -> None:
+    walled = tmp_path / "walled.txt"
+    walled.write_text("..G\n###\nS..\n")
+    world = ["--env", "stlspec/GridWorld-v0", "--map", str(walled)]
+    spec = tmp_path / "never.stl"
+    spec.write_text("signal d_obs\nsignal d_goal\nhard far: always (d_obs >= 9)\nsoft go: eventually (d_goal < 1)\n")
+    empty = tmp_path / "R.json"
+    map_rows = walled.read_text().split()
+    env = {"id": "stlspec/GridWorld-v0", "args": {}, "map": map_rows}
+    document = {"schema": "stlspec.reward/1", "meaning_sha256": "0" * 64, "env": env, "states": [0], "values": [1]}
+    empty.write_text(json.dumps(document))
+    code = run(
+        ["learn", str(spec), *world, *SHORT, "--method", "plain", "--reward", str(empty), "--out", str(tmp_path / "o")]
+    )
+    assert code == 1
+
+
+@pytest.mark.parametrize(
+    ("spec", "code"),
+    [
+        ("signal d_obs\nhard a: always (d_obs >= 1)\n", "goal"),
+        ("signal d_goal\nsignal d_obs\nhard a: always[0, 5] (d_obs > 0)\nsoft b: eventually (d_goal < 1)\n", "always"),
+    ],
+)
+def test_a_task_outside_the_limits_is_refused_with_the_limit(
+    spec: str, code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "x.stl"
+    file.write_text(spec)
+    out = tmp_path / "run"
+    assert run(["learn", str(file), *WORLD, "--demos", DEMOS, "--out", str(out)]) == 2
+    assert code in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_folder_with_other_files_is_never_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    precious = tmp_path / "thesis.txt"
+    precious.write_text("years of work")
+    assert run(["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(tmp_path)]) == 2
+    assert "error[" in capsys.readouterr().err
+    assert precious.read_text() == "years of work"

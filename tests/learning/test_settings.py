@@ -1,0 +1,49 @@
+"""The options of the learner and their defaults."""
+
+import math
+
+import pytest
+
+from stlspec.envs.model import Environment
+from stlspec.errors import UsageError
+from stlspec.learning.settings import default_episodes, make_settings
+
+GIVEN = {
+    "method": "shaped", "episodes": None, "seed": 0, "max_steps": None, "gamma": 0.99, "alpha": 0.1,
+    "epsilon": 0.4, "step_cost": 0.01, "mask": True,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("rows", "columns", "expected"), [(5, 5, 3000), (4, 7, 5000), (8, 2, 10_000)])
+def test_the_longer_side_of_a_map_decides_how_long_to_train(rows, columns, expected):
+    assert default_episodes(Environment("x", map=("." * columns,) * rows)) == expected
+
+
+def test_without_a_map_the_default_is_5000_episodes():
+    assert default_episodes(Environment("x")) == 5000
+
+
+def test_the_step_limit_is_the_environment_s_own_or_four_times_the_states():
+    assert make_settings(Environment("x", n_states=7, max_steps=100), **GIVEN).max_steps == 100
+    assert make_settings(Environment("x", n_states=7), **GIVEN).max_steps == 28
+
+
+def test_the_method_of_the_paper_has_no_mask():
+    assert not make_settings(Environment("x"), **{**GIVEN, "method": "paper"}).mask
+    assert make_settings(Environment("x"), **GIVEN).mask
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        ("method", "fast"), ("episodes", 0), ("episodes", 2.5), ("episodes", True), ("seed", -1),
+        ("max_steps", 0), ("gamma", 1.01), ("gamma", math.nan), ("alpha", 0), ("alpha", "x"),
+        ("epsilon", -0.1), ("step_cost", math.inf), ("step_cost", -1),
+    ],
+)  # fmt: skip
+def test_an_option_out_of_range_is_named_with_its_range(option, value):
+    with pytest.raises(UsageError) as caught:
+        make_settings(Environment("x"), **{**GIVEN, option: value})
+    (found,) = caught.value.diagnostics
+    assert found.code == "D871"
+    assert option.replace("_", "-") in found.message

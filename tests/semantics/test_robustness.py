@@ -1,0 +1,113 @@
+"""The engine agrees with the definition; ties carry the verdict in their sign."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stlspec.compiler.ir import Builder
+from stlspec.semantics.robustness import TIE, evaluate_nodes, needed_nodes, shown
+from stlspec.traces import make_trace
+from tests.oracle import disagreement, main
+from tests.strategies import DECLARED, STEP, cases, random_case, random_signals, seeded_cases
+
+INF = float("inf")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_engine_and_definition_agree_on_random_formulas_and_traces(seed):
+    assert [d for d in map(disagreement, seeded_cases(500, seed)) if d] == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(cases(depth=3, longest=8))
+def test_engine_and_definition_agree_on_what_hypothesis_tries(case):
+    assert disagreement(case) is None
+
+
+def test_the_comparison_can_be_run_from_the_command_line(capsys):
+    assert main(["--cases", "50", "--seed", "7"]) == 0
+    assert capsys.readouterr().out == "50 cases, 0 disagreements\n"
+
+
+def predicate(op, x, bound):
+    builder = Builder()
+    root = builder.add(op, [builder.add("signal", value="x"), builder.add("const", value=bound)])
+    trace = make_trace(STEP, DECLARED[:1], {"x": [x]})
+    return float(evaluate_nodes(builder.nodes, [root], trace)[0][0])
+
+
+@pytest.mark.parametrize(
+    ("op", "x", "expected"),
+    [
+        *[(op, 2.0, TIE) for op in ("ge", "le", "eq")],
+        *[(op, 2.0, -TIE) for op in ("gt", "lt", "ne")],
+        *[("ge", 5.0, 3), ("gt", 5.0, 3), ("le", 5.0, -3), ("lt", 5.0, -3), ("eq", 5.0, -3), ("ne", 5.0, 3)],
+        *[("ge", -INF, -INF), ("lt", -INF, INF), ("eq", INF, -INF), ("ne", INF, INF)],
+    ],
+)
+def test_a_predicate_is_worth_its_distance_and_on_its_bound_a_signed_tie(op, x, expected):
+    assert predicate(op, x, 2.0) == expected
+
+
+@pytest.mark.parametrize(("op", "expected"), [("ge", TIE), ("eq", TIE), ("gt", -TIE), ("ne", -TIE)])
+@pytest.mark.parametrize("x", [INF, -INF])
+def test_equal_infinities_differ_by_nothing(op, expected, x):
+    assert predicate(op, x, x) == expected
+
+
+def test_ties_are_shown_as_zero_never_as_minus_zero():
+    values = np.array([TIE, -TIE, 1.0, -INF, 1e-323])
+    result = shown(values)
+    assert result.tolist() == [0, 0, 1, -INF, 1e-323]
+    assert not np.signbit(result[:2]).any()
+    assert values[0] == TIE
+
+
+def test_only_the_nodes_that_the_roots_need_are_evaluated():
+    builder = Builder()
+    x = builder.add("signal", value="x")
+    builder.add("ge", [builder.add("signal", value="absent"), x])
+    root = builder.add("ge", [x, builder.add("const", value=1.0)])
+    assert needed_nodes(builder.nodes, [root]) == [0, 3, 4]
+    trace = make_trace(STEP, DECLARED[:1], {"x": [3.0]})
+    assert evaluate_nodes(builder.nodes, [root], trace)[0].tolist() == [2.0]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.randoms(use_true_random=False), st.integers(1, 5))
+def test_a_batch_equals_its_traces_bit_for_bit(rng, n_traces):
+    case = random_case(rng, 3, 20)
+    n = len(case.times)
+    several = [random_signals(rng, n) for _ in range(n_traces)]
+    time = None if case.base.kind == "step" else [t / 10 for t in case.times]
+    batch = {name: [s[name] for s in several] for name in case.signals}
+    try:
+        alone = [evaluate_nodes(case.nodes, [case.root], make_trace(case.base, DECLARED, s, time))[0] for s in several]
+    except ValueError:
+        raise
+    except Exception:
+        return
+    together = evaluate_nodes(case.nodes, [case.root], make_trace(case.base, DECLARED, batch, time))[0]
+    assert together.tobytes() == np.stack(alone, axis=1).tobytes()
+
+
+def test_several_roots_share_their_nodes_and_keep_their_own_values():
+    builder = Builder()
+    p = builder.add("ge", [builder.add("signal", value="x"), builder.add("const", value=1.0)])
+    always = builder.add("always", [p], interval=(0, 1))
+    roots = [always, p, builder.add("not", [always]), p]
+    trace = make_trace(STEP, DECLARED[:1], {"x": [3, 2, 5]})
+    values = [v.tolist() for v in evaluate_nodes(builder.nodes, roots, trace)]
+    assert values == [[1, 1, 4], [2, 1, 4], [-1, -1, -4], [2, 1, 4]]
+
+
+def test_a_thousand_nested_operators_need_no_recursion():
+    builder = Builder()
+    node = builder.add("ge", [builder.add("signal", value="x"), builder.add("const", value=1.0)])
+    for i in range(1000):
+        interval = (0, 1)
+        op = ("always", "eventually", "not", "next")[i % 4]
+        node = builder.add(op, [node], interval=interval if op in ("always", "eventually") else None)
+    trace = make_trace(STEP, DECLARED[:1], {"x": [3.0] * 10})
+    # 250 times strong `next` under 250 negations: every sample ends beyond the trace.
+    assert np.isinf(evaluate_nodes(builder.nodes, [node], trace)[0]).all()

@@ -1,0 +1,73 @@
+"""The Python API keeps its contract."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stlspec
+
+SPECS = Path(__file__).parents[1] / "specs"
+TEXT = "signal x\nparam c = 1\nhard up: always (x >= c)\nsoft high depends on up: eventually[0, 2] (x > 3)\n"
+
+
+def test_text_is_a_spec_and_a_path_is_a_file() -> None:
+    assert stlspec.compile(TEXT).requirements[0].name == "up"
+    assert stlspec.compile(SPECS / "example_1.stl").name == "example_1"
+    with pytest.raises(stlspec.SpecError) as caught:
+        stlspec.compile("no spec at all")
+    assert caught.value.diagnostics[0].code == "S003"
+
+
+def test_params_are_bound_at_compile_time_and_are_part_of_the_meaning() -> None:
+    one, other = stlspec.compile(TEXT), stlspec.compile(TEXT, params={"c": 2})
+    assert [p.value for p in other.params] == [2.0]
+    assert one.meaning_sha256 != other.meaning_sha256
+    assert one.source_sha256 == other.source_sha256
+
+
+def test_one_trace_gives_floats_and_a_witness() -> None:
+    result = stlspec.compile(TEXT).evaluate({"x": [2, 1, 4]})
+    assert (result["up"].robustness, result["up"].verdict) == (0.0, stlspec.Verdict.SATISFIED)
+    assert result["up"].witness is not None
+    assert result["up"].witness.sample == 1
+    assert result["up"].signal.tolist() == [0.0, 0.0, 3.0]
+
+
+def test_a_batch_gives_arrays_and_a_ragged_list_gives_lists() -> None:
+    bundle = stlspec.compile(TEXT)
+    batch = bundle.evaluate({"x": [[2, 1, 4], [2, 0, 0]]})
+    assert batch["up"].satisfied.tolist() == [True, False]
+    assert batch["up"].witness_sample.tolist() == [1, 1]
+    assert batch["up"].signal.shape == (2, 3)
+    ragged = bundle.evaluate({"x": [[2, 1, 4], [2, 0]]})
+    assert ragged["high"].robustness.tolist() == [1.0, -1.0]
+    assert [len(row) for row in ragged["up"].signal] == [3, 2]
+
+
+def test_a_bundle_survives_file_and_pickle(tmp_path: Path) -> None:
+    bundle = stlspec.compile(TEXT)
+    bundle.save(tmp_path / "x.stlb")
+    for copy in (stlspec.load(tmp_path / "x.stlb"), pickle.loads(pickle.dumps(bundle))):
+        assert copy.meaning_sha256 == bundle.meaning_sha256
+        assert copy.evaluate({"x": [5]})["up"].robustness == 4.0
+
+
+def test_a_bundle_cannot_be_changed() -> None:
+    bundle = stlspec.compile(TEXT)
+    with pytest.raises(AttributeError):
+        bundle.name = "other"  # type: ignore[misc]
+
+
+def test_the_graph_carries_weights() -> None:
+    graph = stlspec.compile(TEXT).to_networkx()
+    assert list(graph.edges) == [("up", "high")]
+    assert graph.nodes["up"]["raw_weight"] == 2
+    assert np.isclose(graph.nodes["up"]["weight"] + graph.nodes["high"]["weight"], 1)
+
+
+def test_unknown_names_are_attribute_errors_and_dir_lists_the_surface() -> None:
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = stlspec.nothing
+    assert "compile" in dir(stlspec)

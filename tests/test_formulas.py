@@ -1,0 +1,39 @@
+"""One formula without a spec means what it means inside one."""
+
+import pytest
+
+from stlspec.demos import load_demonstrations
+from stlspec.errors import SpecError, UsageError
+from stlspec.formulas import compile_formula, evaluate_on
+
+
+def test_names_become_signals_and_params_numbers() -> None:
+    bundle = compile_formula("G (x > c and armed)", frozenset({"armed"}), "step", {"c": "2"})
+    assert [(s.name, s.type) for s in bundle.signals] == [("x", "real"), ("armed", "bool")]
+    assert bundle.evaluate({"x": [3, 4], "armed": [1, 1]})["formula"].robustness == 1.0
+
+
+def test_a_column_called_like_an_operator_is_an_operator_unless_it_is_boolean(tmp_path) -> None:
+    file = tmp_path / "x.csv"
+    file.write_text("G,x\ntrue,1\ntrue,2\n")
+    (row,) = evaluate_on("G and x > 0", load_demonstrations([file]))
+    assert row.result.robustness == 1.0
+
+
+def test_time_is_read_as_in_a_spec() -> None:
+    bundle = compile_formula("F[0, 1 s] x > 0", frozenset(), "250 ms")
+    assert bundle.horizon == 1_000_000_000
+    with pytest.raises(UsageError, match="--time"):
+        compile_formula("x > 0", frozenset(), "( soon")
+
+
+@pytest.mark.parametrize("text", ["", "always x", "always (x > 0", "x > > 1", "x = 1"])
+def test_a_wrong_formula_is_a_spec_error(text: str) -> None:
+    with pytest.raises(SpecError):
+        compile_formula(text, frozenset())
+
+
+@pytest.mark.parametrize(("name", "value"), [("c", "soon"), ("c", "nan"), ("2c", "1")])
+def test_a_param_that_is_no_number_is_refused(name: str, value: str) -> None:
+    with pytest.raises(UsageError, match="N108"):
+        compile_formula("x > 0", frozenset(), "step", {name: value})

@@ -1,0 +1,70 @@
+"""README tells the truth: every command in it runs, except the two that set up and test."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, re.S | re.M)
+SHELL = [body for kind, body in BLOCKS if kind == "sh"]
+COMMANDS = [line for body in SHELL[2:] for line in body.splitlines() if line]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that looks like the checkout to the commands."""
+    folder = tmp_path_factory.mktemp("readme")
+    (folder / "specs").symlink_to(ROOT / "specs", target_is_directory=True)
+    (folder / "out").mkdir()
+    return folder
+
+
+def test_the_first_two_blocks_are_the_two_commands() -> None:
+    assert "pip install" in SHELL[0]
+    assert "stlspec learn" in SHELL[0]
+    assert "pytest" in SHELL[1]
+
+
+@pytest.mark.xdist_group("readme")
+def test_the_commands_run_in_order(folder: Path) -> None:
+    assert len(COMMANDS) >= 12
+    for line in COMMANDS:
+        command, _, comment = line.partition("#")
+        expected = int(comment.split()[-1]) if comment.strip().startswith("exit") else 0
+        words = shlex.split(command)
+        assert words[0] == "stlspec"
+        words = [
+            str(path.relative_to(folder)) if "*" in word else word
+            for word in words
+            for path in (sorted(folder.glob(word)) if "*" in word else [Path(word)])
+        ]
+        run = subprocess.run(
+            [sys.executable, "-m", "stlspec", *words[1:]], cwd=folder, capture_output=True, text=True, check=False
+        )
+        assert run.returncode == expected, f"{line}\n{run.stdout}{run.stderr}"
+        assert run.stdout.strip(), line
+
+
+def test_the_python_example_runs(folder: Path) -> None:
+    (code,) = [body for kind, body in BLOCKS if kind == "python"]
+    run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines() == ["satisfied 0.0 1", "[ True False] [1 1]", "good True 2", "I401 write [2, 5]"]
+
+
+def test_the_language_at_a_glance_checks() -> None:
+    from stlspec.compiler.compiling import check_source
+    from stlspec.source import SourceText
+
+    (spec,) = [body for kind, body in BLOCKS if kind == "text" and body.startswith("spec drone")]
+    assert check_source(SourceText.of("README.md", spec)).diagnostics == ()
+
+
+def test_every_file_that_readme_links_exists() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", TEXT):
+        assert (ROOT / target).exists(), target

@@ -1,0 +1,38 @@
+"""The specs of the paper's tasks run, and say what their comments say."""
+
+from pathlib import Path
+
+import pytest
+
+import stlspec
+
+SPECS = Path(__file__).parents[1] / "specs"
+PAIRS = {
+    "frozenlake_4x4": ("frozenlake_4x4.jsonl", ["good", "incomplete", "bad"]),
+    "frozenlake_8x8": ("frozenlake_8x8.jsonl", ["good", "incomplete", "incomplete", "bad"]),
+    "grid_single_goal": ("grid_5x5.jsonl", ["good", "incomplete", "bad", "incomplete"]),
+    "grid_two_goals": ("grid_5x5_two_goals.jsonl", ["good", "good", "bad"]),
+    "mountain_car": ("mountain_car.jsonl", ["good", "incomplete", "incomplete"]),
+    "example_1": ("example_1.json", ["bad", "good"]),
+    "example_2": ("example_2.csv", ["incomplete"]),
+}
+
+
+def test_every_spec_has_demonstrations_here() -> None:
+    assert {path.stem for path in SPECS.glob("*.stl")} == PAIRS.keys()
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_demonstrations_get_the_labels_that_they_were_made_for(name: str) -> None:
+    file, labels = PAIRS[name]
+    bundle = stlspec.compile(SPECS / f"{name}.stl")
+    ranking = stlspec.score(bundle, stlspec.load_demonstrations([SPECS / "demos" / file]))
+    assert [d.label for d in ranking.demonstrations] == labels
+
+
+def test_the_sine_touches_its_bound_and_holds() -> None:
+    bundle = stlspec.compile(SPECS / "example_2.stl")
+    (row,) = stlspec.score(bundle, stlspec.load_demonstrations([SPECS / "demos" / "example_2.csv"])).demonstrations
+    bounded = row.requirements["bounded"].result
+    assert (bounded.robustness, bounded.verdict) == (0.0, stlspec.Verdict.SATISFIED)
+    assert row.requirements["positive_for_a_period"].result.robustness == -1.0
