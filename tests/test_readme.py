@@ -54,7 +54,7 @@ def test_the_python_example_runs(folder: Path) -> None:
     (code,) = [body for kind, body in BLOCKS if kind == "python"]
     run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    assert run.stdout.splitlines() == ["satisfied 0.0 1", "[ True False] [1 1]", "good True 2", "I401 write [2, 5]"]
+    assert run.stdout.splitlines() == ["satisfied 0.0 1", "[ True False] [1 1]", "good True 3", "I401 write [2, 5]"]
 
 
 def test_the_language_at_a_glance_checks() -> None:

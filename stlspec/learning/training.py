@@ -29,6 +29,9 @@ from stlspec.semantics.evaluation import Evaluation, RequirementResult, evaluate
 CHECKPOINT_SECONDS = 1.0
 """How often the state of a run is kept; more rarely where keeping it takes long."""
 
+CHECKPOINT_SHARE = 0.05
+"""The largest share of the time that may go into keeping it."""
+
 Progress = Callable[[int, int, int], object]
 """Called between chunks with episodes done, episodes in all, and steps so far."""
 
@@ -135,7 +138,7 @@ def train(
             position = resume.Position(chunks, tuple(checks), spent + now - began)
             storage.save_checkpoint(directory, key, resume.to_state(learner, position))
             saved = time.perf_counter()
-            pause = max(CHECKPOINT_SECONDS, 20 * (saved - now))
+            pause = max(CHECKPOINT_SECONDS, (saved - now) / CHECKPOINT_SHARE)
         if progress is not None:
             progress(len(learner.steps), settings.episodes, learner.env_steps)
     return resume.Position(chunks, tuple(checks), spent + time.perf_counter() - began)

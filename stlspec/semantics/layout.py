@@ -117,8 +117,9 @@ def _row_length(columns: Mapping[str, Any], number: int, file: str | None) -> in
             expected, other = length, name
         elif length != expected:
             place = f"trace {number}" if file is None else f"{file}, trace {number}"
-            fields = {"signal": name, "length": length, "other": other, "expected": expected}
-            raise DataError([diagnostic("D805", file=place, **fields)])
+            raise DataError(
+                [diagnostic("D805", file=place, signal=name, length=length, other=other, expected=expected)]
+            )
     return expected
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+
 from stlspec import api
 from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment

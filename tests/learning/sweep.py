@@ -12,6 +12,7 @@ import time
 
 from conftest import FROZENLAKE, demonstrations, frozen_lake, grid_bundle, item_parts, public_items, random_task
 from gymnasium.envs.toy_text.frozen_lake import MAPS
+
 from stlspec.learning import learn
 
 SEEDS = range(10)

@@ -26,11 +26,10 @@ REWARD = (0.0, 0.2, 0.4, 1.0, -1.0)
 
 def naive_return(states, gamma):
     """Walk along states with the paper's reward: R(s') plus, for each hard requirement, its minimum so far."""
-    total, steps = 0.0, 0
+    total = 0.0
     for k in range(1, len(states)):
         lows = [min(ROBUSTNESS[s][h] for s in states[: k + 1][-50:] + states[:2]) for h in (0, 1)]
-        total += gamma**steps * (REWARD[states[k]] + sum(lows))
-        steps += 1
+        total += gamma ** (k - 1) * (REWARD[states[k]] + sum(lows))
     return total
 
 

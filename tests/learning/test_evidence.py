@@ -1,0 +1,67 @@
+"""What demonstrations contribute: a reward, and pairs to mask where they were made."""
+
+from dataclasses import replace
+
+import pytest
+
+from stlspec.learning.evidence import gather, notes, violating_pairs
+from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
+from stlspec.learning.task import Task, make_task
+from stlspec.rewards import infer_reward
+
+# 0 -> 1 by both actions, 1 -> 2 (violates) by action 1
+TASK = Task("g", 4, 2, 0, ((1, 1), (0, 2), (3, 3), (3, 3)), (RUNS, RUNS, VIOLATION, GOAL), ((0.0,),) * 4)
+
+
+@pytest.mark.parametrize(
+    ("states", "expected"),
+    [((0, 1, 2, 3), {(1, 1)}), ((0, 1, 0), set()), ((0, 2), set()), ((2, 3), set())],
+)
+def test_the_pairs_by_which_a_violation_was_entered_are_masked(states, expected):
+    assert violating_pairs(TASK, states) == expected
+
+
+def gathered(small, demonstrations=None, world=None, **given):
+    bundle, home, demos = small
+    world = world or home
+    demos = demos if demonstrations is None else demonstrations
+    fields = {"reward": None, "demo_environment": None, **given}
+    return gather(bundle, make_task(bundle, world), world, demos, **fields)
+
+
+def test_bad_demonstrations_fill_the_mask_on_their_own_map(small):
+    """By hand, pub-g5-0: the bad one enters (4, 1) from (4, 0) and (4, 3) from (4, 2), both to the right."""
+    evidence = gathered(small)
+    assert evidence.violating == ((20, 2), (22, 2))
+    assert (evidence.bad, evidence.bad_elsewhere) == (1, 0)
+    assert evidence.reward == infer_reward(small[0], small[2], small[1])
+
+
+def test_on_another_map_they_fill_nothing(small, kit):
+    """The same map without the obstacle at (4, 1): the table is the same, but its meaning is not."""
+    other = kit.grid_world(("#...G", ".....", "#....", ".....", "S..#."))
+    evidence = gathered(small, world=other, demo_environment=small[1])
+    assert evidence.violating == ()
+    assert evidence.bad_elsewhere == 1
+
+
+def test_a_given_reward_is_taken_and_other_specs_are_told(small, kit):
+    reward = infer_reward(small[0], small[2][:1], small[1])
+    assert gathered(small, reward=reward).reward == reward
+    assert gathered(small, reward=reward).warnings == ()
+    other = replace(reward, meaning_sha256="0" * 64)
+    assert [w.code for w in gathered(small, reward=other).warnings] == ["D865"]
+
+
+def test_a_reward_of_0_is_a_warning(small):
+    (warning,) = gathered(small, demonstrations=[]).warnings
+    assert warning.code == "D864"
+    assert "no demonstrations" in warning.message
+
+
+def test_the_report_says_what_bad_demonstrations_did(small):
+    evidence = gathered(small)
+    assert "2 pairs masked" in notes(evidence, "shaped", True)[0]
+    assert "mask and the pictures only" in notes(evidence, "plain", True)[0]
+    assert "reward map only" in notes(evidence, "paper", False)[0]
+    assert notes(replace(evidence, bad=0), "shaped", True) == ()
