@@ -227,8 +227,6 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
     if drawing:
         console.print(Text("\nIts path:\n" + drawing))
     console.print(Text("\n" + "\n".join(_training_lines(outcome))))
-    if outcome.method == "paper":
-        console.print(Text(farming_text(outcome)))
     for note in outcome.notes:
         console.print(Text(note))
     console.print(Text(f"\nFiles in {out}{os.sep}: {', '.join(sorted(outcome.files.values()))}"))
@@ -247,20 +245,6 @@ def _training_lines(outcome: Outcome) -> list[str]:
             f"({training.env_steps_to_success:,} steps)"
         )
     return lines
-
-
-def farming_text(outcome: Outcome) -> str:
-    """Say whether a policy of the method paper circles for reward, and what circling pays beside arriving."""
-    found = outcome.farming
-    if found is None:
-        return "It does not farm: its path ends."
-    named = outcome.policy.states
-    around = [str(list(s) if isinstance(s, tuple) else s) for s in (named[i] for i in found.cycle)]
-    cycle = " -> ".join([*around, around[0]])
-    pays = f"It farms: it circles {cycle} for a discounted return of {shown_number(found.return_cycle)}"
-    if found.return_goal is None:
-        return f"{pays}; no safe path leads to the goal."
-    return f"{pays}; going to the goal from there would pay {shown_number(found.return_goal)}."
 
 
 def path_on_map(environment: Environment, states: Sequence[int]) -> str:
