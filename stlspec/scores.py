@@ -205,9 +205,7 @@ def score(
     Returns: the ranking, in the order of the demonstrations.
     Raises:  DataError: signals are missing or unusable; D860: an infinite robustness under `bound none`.
     """
-    evaluated = evaluate_demonstrations(
-        bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan
-    )
+    evaluated = evaluate_demonstrations(bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan)
     return rank_demonstrations(bundle, evaluated, at=at)
 
 
@@ -248,9 +246,7 @@ def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label 
     )
 
 
-def _requirement_score(
-    requirement: Requirement, demonstration: str, result: RequirementResult
-) -> RequirementScore:
+def _requirement_score(requirement: Requirement, demonstration: str, result: RequirementResult) -> RequirementScore:
     """Bound one robustness; a vacuous requirement says nothing about the demonstration, and counts 0."""
     reason = failure(requirement.name, result)
     if result.vacuous:

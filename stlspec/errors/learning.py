@@ -81,8 +81,7 @@ CODES: tuple[Code, ...] = (
         "D866",
         "a spec without a goal",
         "error",
-        message="there is no goal to learn: no requirement has an `eventually` over a condition on the "
-        "present sample",
+        message="there is no goal to learn: no requirement has an `eventually` over a condition on the present sample",
         help="say where to get to, for example: soft reach: eventually (d_goal < 1)",
         explanation="An episode of training ends at a goal. Goals are the conditions on the present sample "
         "(no temporal operator, delta, rate or now) under an `eventually` of any requirement.",
@@ -107,8 +106,7 @@ CODES: tuple[Code, ...] = (
         "D868",
         "a hard requirement that the learner cannot watch step by step",
         "error",
-        message="hard requirement '{requirement}' is not `always` of a condition on the present sample: "
-        "{reason}",
+        message="hard requirement '{requirement}' is not `always` of a condition on the present sample: {reason}",
         help="write it as `hard {requirement}: always (...)` without bounds, temporal operators, delta, rate "
         "and now inside, or make it soft",
         explanation="The learner watches hard requirements at every step, in a table over states. That works "
@@ -194,8 +192,7 @@ CODES: tuple[Code, ...] = (
         message="demonstration '{name}' has states, but no environment says which they are",
         help='name the environment: --env ID, or "env": {{"id": ...}} in the demonstration; states that '
         "are raw observations cannot be given rewards yet",
-        explanation="Rewards are values of an environment's discrete states: [row, col] on a map, or a "
-        "number.",
+        explanation="Rewards are values of an environment's discrete states: [row, col] on a map, or a number.",
         bad="# stlspec reward spec.stl demo.json   where demo.json has states and no env\n",
         good="# stlspec reward spec.stl demo.json --env stlspec/GridWorld-v0 --map grid.txt\n",
         kind="shown",
