@@ -60,7 +60,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(words, error.exit_code, error.diagnostics)
     except (KeyboardInterrupt, typer.Abort):
         print("interrupted", file=sys.stderr)
-        return INTERRUPTED
+        return _fail(words, INTERRUPTED, [])
     except BrokenPipeError:
         # The reader has gone: what remains in the buffer must not raise again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

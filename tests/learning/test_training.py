@@ -4,10 +4,13 @@ import json
 import math
 import random
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from stlspec import api
+from stlspec.demos import load_demonstrations
+from stlspec.envs.catalogue import make_environment, read_map
 from stlspec.errors import DataError, UsageError
 from stlspec.learning import learn, training
 from stlspec.learning.training import first_lasting_success
@@ -173,10 +176,15 @@ def test_the_paper_s_method_farms_and_shows_that_it_pays(kit, number):
     assert outcome.to_json()["farming"]["cycle"][0] == list(outcome.path[entry])
 
 
-def test_where_the_paper_s_method_does_not_farm_it_says_so(kit):
-    """Right at the goal arriving is the only thing that happens."""
-    bundle = api.compile("signal d_goal\nsoft near: eventually (d_goal <= 2)")
-    outcome = learn(bundle, kit.grid_world(("S.", ".G")), method="paper", episodes=30)
+def test_where_the_paper_s_method_does_not_farm_it_says_so():
+    """In the corridor nothing but arriving pays: every cell touches an obstacle, so rho is 0 throughout, and
+    the demonstration holds the goal alone, so no cell before it has a reward."""
+    specs = Path(__file__).parents[2] / "specs"
+    bundle = api.compile(specs / "grid_single_goal.stl")
+    world = make_environment("stlspec/GridWorld-v0", None, read_map(specs / "maps" / "corridor.txt"))
+    demos = load_demonstrations([specs / "demos" / "corridor.jsonl"])
+    outcome = learn(bundle, world, demos, method="paper", episodes=300)
+    assert outcome.path == ((0, 0), (0, 1), (0, 2))
     assert outcome.farming is None
     assert "does not farm" in outcome.notes[-1]
     assert outcome.to_json()["farming"] is None
