@@ -5,9 +5,12 @@ and columns and draws an excerpt with carets. Lines end at LF only (a lone CR co
 that no offset moves); columns count code points from 1; ends are exclusive.
 """
 
+import re
 from bisect import bisect_right
 from dataclasses import dataclass, field
 
+_LONE_CR = re.compile(r"\r(?!\n)")
+_SURROGATE = re.compile("[\ud800-\udfff]")
 _LONGEST_LINE_SHOWN = 160
 
 
@@ -49,11 +52,12 @@ class SourceText:
 
     @classmethod
     def of(cls, name: str, text: str) -> "SourceText":
-        """Normalise `text` as it comes from a file: no byte-order mark, lone CR as LF; CRLF stays."""
-        text = text.removeprefix("\ufeff")
-        if "\r" in text:
-            text = text.replace("\r\n", "\0\n").replace("\r", "\n").replace("\0\n", "\r\n")
-        return cls(name, text)
+        """Normalise `text` as it comes from a file: no byte-order mark, lone CR as LF; CRLF stays.
+
+        Half surrogate pairs, which no file can hold, become replacement characters, one for one.
+        """
+        text = _LONE_CR.sub("\n", text.removeprefix("\ufeff"))
+        return cls(_SURROGATE.sub("\ufffd", name), _SURROGATE.sub("\ufffd", text))
 
     def position(self, offset: int) -> Position:
         """Return the line and column of `offset`."""

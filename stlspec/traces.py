@@ -8,6 +8,7 @@ rounded here only: from then on every window is found by integer arithmetic, so 
 import difflib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -23,6 +24,8 @@ Ints = NDArray[np.int64]
 
 # A window ends at most one trace length after its sample, so twice the longest trace must fit into int64.
 _LONGEST_TICKS = 2.0**62
+# Ticks of up to this many samples are kept for the next trace of the same length.
+_LONGEST_SHARED = 2**20
 _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
 
 
@@ -237,11 +240,10 @@ def _common_shape(
 
 def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> tuple[Ints, Floats | None]:
     """Return the ticks of the samples since the first, and the stamps if they count."""
-    index = np.arange(n, dtype=np.int64)
     if time is None:
         if base.kind == "stamps":
             raise _error("D810", file, unit=base.unit)
-        return index if base.period is None else index * base.period, None
+        return _even_ticks(n, base.period or 1), None
     stamps = _column("time", time, file)
     if stamps.ndim != 1:
         raise _error("D813", file, what="'time'", problem="has one row for each trace, but the signals do not")
@@ -256,10 +258,20 @@ def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
     rounded = np.rint(ticks).astype(np.int64)
     _check_increasing(stamps if base.kind != "stamps" else rounded, stamps, file)
     if base.kind == "step":
-        return index, None
+        return _even_ticks(n, 1), None
     if base.kind == "period":
         rounded = _on_period(base, stamps, ticks, file)
     return rounded, stamps
+
+
+def _even_ticks(n: int, period: int) -> Ints:
+    """Return the ticks of n evenly spaced samples; not to be written to, for traces share them."""
+    return _shared_ticks(n, period) if n <= _LONGEST_SHARED else np.arange(n, dtype=np.int64) * period
+
+
+@lru_cache(maxsize=4)
+def _shared_ticks(n: int, period: int) -> Ints:
+    return _frozen(np.arange(n, dtype=np.int64) * period)
 
 
 def _check_increasing(values: NDArray[Any], stamps: Floats, file: str | None) -> None:
@@ -299,9 +311,10 @@ def _check_values(trace: Trace, declared: Sequence[Signal]) -> None:
         column = trace.signals.get(signal.name)
         if column is None:
             continue
-        missing = np.isnan(column)
-        if missing.any():
-            at = _first(missing)
+        with np.errstate(invalid="ignore"):
+            least = column.min()
+        if np.isnan(least):
+            at = _first(np.isnan(column))
             raise _error("D801", trace.file, signal=signal.name, **_where(trace, at))
         low = -np.inf if signal.low is None else signal.low
         high = np.inf if signal.high is None else signal.high

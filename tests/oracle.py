@@ -75,9 +75,7 @@ class Oracle:
             return [top if x else bottom for x in self.signals[node.value]]
         if node.op in ("true", "false"):
             return [top if node.op == "true" else bottom] * self.n
-        operands = [
-            self._once(algebra["name"], c, lambda i: self._formula(i, algebra)) for c in node.children
-        ]
+        operands = [self._once(algebra["name"], c, lambda i: self._formula(i, algebra)) for c in node.children]
         if node.op == "not":
             return [algebra["negate"](x) for x in operands[0]]
         if node.op in ("and", "or"):

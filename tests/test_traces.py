@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.errors import DataError
 from stlspec.traces import make_trace

@@ -6,8 +6,9 @@ structure and both hashes are checked, and derived parts (weights, horizons) are
 
 import hashlib
 import json
-from collections.abc import Mapping
-from pathlib import PurePath
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path, PurePath
 from types import MappingProxyType
 from typing import Any
 
@@ -15,7 +16,15 @@ from stlspec.compiler.bundle import BundleData, Param, Requirement, Signal, Time
 from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ir import Node
-from stlspec.compiler.structure import Malformed, Reader, check_nodes, check_requirements
+from stlspec.compiler.structure import (
+    Malformed,
+    Reader,
+    check_names,
+    check_nodes,
+    check_requirements,
+    check_signals,
+    check_time,
+)
 from stlspec.errors import BundleError, diagnostic
 
 SCHEMA = "stlspec.bundle/1"
@@ -85,49 +94,29 @@ def _sources(bundle: BundleData) -> list[Json]:
     return [{"file": PurePath(name).name, "text": text} for name, text in bundle.sources]
 
 
+def schema_text() -> str:
+    """Return the JSON Schema of the bundle file, as it ships with the package."""
+    return Path(__file__).with_name("bundle.schema.json").read_text(encoding="utf-8")
+
+
 def dump(bundle: BundleData) -> bytes:
     """Write a bundle as canonical JSON with a line end."""
-    document = {
+    return _canonical(_written(bundle)) + b"\n"
+
+
+def _written(bundle: BundleData) -> Json:
+    return {
         "schema": SCHEMA,
         "language": LANGUAGE,
         "meaning_sha256": meaning_sha256(bundle),
         "source_sha256": source_sha256(bundle),
         "name": bundle.name,
         "title": bundle.title,
-        "time": {
-            "kind": bundle.time.kind,
-            "unit": bundle.time.unit,
-            "ticks_per_unit": bundle.time.ticks_per_unit,
-            "period": bundle.time.period,
-        },
-        "signals": [
-            {
-                "name": s.name,
-                "type": s.type,
-                "unit": s.unit,
-                "low": _optional(s.low),
-                "high": _optional(s.high),
-                "source": s.source,
-                "doc": s.doc,
-            }
-            for s in bundle.signals
-        ],
-        "params": [{"name": p.name, "value": number(p.value), "unit": p.unit, "doc": p.doc} for p in bundle.params],
+        "time": asdict(bundle.time),
+        "signals": [{**asdict(s), "low": _optional(s.low), "high": _optional(s.high)} for s in bundle.signals],
+        "params": [{**asdict(p), "value": number(p.value)} for p in bundle.params],
         "requirements": [
-            {
-                "name": r.name,
-                "strength": r.strength,
-                "root": r.root,
-                "depends_on": list(r.depends_on),
-                "scale": number(r.scale),
-                "bound": r.bound,
-                "horizon": r.horizon,
-                "raw_weight": raw,
-                # 15 digits: the last bit of exp differs between C libraries, the bytes must not.
-                "weight": float(f"{weight:.15g}"),
-                "doc": r.doc,
-                "text": r.text,
-            }
+            {**asdict(r), "depends_on": list(r.depends_on), "raw_weight": raw, "weight": weight}
             for r, raw, weight in zip(bundle.requirements, bundle.raw_weights, bundle.weights, strict=True)
         ],
         "edges": [list(edge) for edge in bundle.edges],
@@ -135,7 +124,6 @@ def dump(bundle: BundleData) -> bytes:
         "names": dict(bundle.names),
         "sources": _sources(bundle),
     }
-    return _canonical(document) + b"\n"
 
 
 def load(data: bytes, file: str = "bundle") -> BundleData:
@@ -146,7 +134,8 @@ def load(data: bytes, file: str = "bundle") -> BundleData:
     document = _document(data, file)
     for what, known in (("schema", SCHEMA), ("language", LANGUAGE)):
         if document.get(what) != known:
-            found = repr(document.get(what))[:40]
+            value = document.get(what)
+            found = repr(value)[:40] if isinstance(value, str | int | None) else f"a {type(value).__name__}"
             raise BundleError([diagnostic("B702", file=file, what=what, found=found, known=known)])
     try:
         bundle = _bundle(Reader(document, "the bundle"))
@@ -155,9 +144,24 @@ def load(data: bytes, file: str = "bundle") -> BundleData:
     for what, computed in (("meaning_sha256", meaning_sha256), ("source_sha256", source_sha256)):
         if document.get(what) != computed(bundle):
             raise BundleError([diagnostic("B703", file=file, what=what)])
-    if json.loads(dump(bundle)) != document:
+    if not _is_same(document, bundle):
         raise BundleError([diagnostic("B703", file=file, what="content")])
     return bundle
+
+
+def _is_same(document: Json, bundle: BundleData) -> bool:
+    """Tell whether a document says what the bundle made of it, byte for byte but for blanks."""
+    try:
+        return _canonical(document) == _canonical(_written(bundle))
+    except (ValueError, RecursionError):
+        return False
+
+
+def _once(pairs: Sequence[tuple[str, Any]]) -> Json:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError("a key is given twice")
+    return found
 
 
 def _document(data: bytes, file: str) -> Json:
@@ -167,7 +171,7 @@ def _document(data: bytes, file: str) -> Json:
         problem = f"it has {len(data)} bytes, more than {LARGEST}"
     else:
         try:
-            document = json.loads(data.decode("utf-8"))
+            document = json.loads(data.decode("utf-8"), object_pairs_hook=_once)
         except UnicodeDecodeError:
             problem = "it is not UTF-8 text"
         except RecursionError:
@@ -188,38 +192,48 @@ def _bundle(top: Reader) -> BundleData:
     time = _read_time(top.entry("time"))
     ahead = horizons(nodes, time)
     requirements = tuple(_read_requirement(entry, ahead) for entry in top.entries("requirements"))
+    params = tuple(_read_param(entry) for entry in top.entries("params"))
+    names = top.entry("names")
+    check_names([s.name for s in signals], [p.name for p in params], [r.name for r in requirements], list(names.values))
+    check_signals(signals)
     check_requirements(requirements, nodes)
     edges = {r.name: r.depends_on for r in requirements}
     if find_cycle(edges):
         raise Malformed("its requirements depend on each other in a circle")
     raw = dependency_weights(list(ancestors(edges).values()))
-    names = top.entry("names")
     return BundleData(
-        name=top.text("name"),
+        name=top.name("name") if top.values.get("name") else top.text("name"),
         title=top.optional_text("title"),
         time=time,
         signals=signals,
-        params=tuple(_read_param(entry) for entry in top.entries("params")),
+        params=params,
         requirements=requirements,
         nodes=nodes,
         names=MappingProxyType({name: names.index(name, len(nodes)) for name in names.values}),
         raw_weights=raw,
         weights=softmax(raw),
-        sources=tuple((entry.text("file"), entry.text("text")) for entry in top.entries("sources")),
+        sources=_read_sources(top),
     )
+
+
+def _read_sources(top: Reader) -> tuple[tuple[str, str], ...]:
+    sources = tuple((entry.text("file"), entry.text("text")) for entry in top.entries("sources"))
+    if not sources:
+        raise Malformed("it has no source")
+    return sources
 
 
 def _read_time(entry: Reader) -> TimeBase:
     kind = entry.choice("kind", ("step", "period", "stamps"))
     period = entry.whole("period", 1, 2**62) if entry.values.get("period") is not None else None
-    if (kind == "period") != (period is not None):
-        raise Malformed("its period does not fit its kind of time")
-    return TimeBase(kind, entry.text("unit"), entry.whole("ticks_per_unit", 1, 2**62), period)  # type: ignore[arg-type]
+    time = TimeBase(kind, entry.text("unit"), entry.whole("ticks_per_unit", 1, 2**62), period)  # type: ignore[arg-type]
+    check_time(time)
+    return time
 
 
 def _read_signal(entry: Reader) -> Signal:
     return Signal(
-        entry.text("name"),
+        entry.name("name"),
         entry.choice("type", ("real", "bool")),  # type: ignore[arg-type]
         entry.optional_text("unit"),
         entry.optional_number("low"),
@@ -230,7 +244,7 @@ def _read_signal(entry: Reader) -> Signal:
 
 
 def _read_param(entry: Reader) -> Param:
-    return Param(entry.text("name"), entry.number("value"), entry.optional_text("unit"), entry.optional_text("doc"))
+    return Param(entry.name("name"), entry.number("value"), entry.optional_text("unit"), entry.optional_text("doc"))
 
 
 def _read_requirement(entry: Reader, ahead: tuple[int | None, ...]) -> Requirement:
@@ -239,7 +253,7 @@ def _read_requirement(entry: Reader, ahead: tuple[int | None, ...]) -> Requireme
     if not 0 < scale < float("inf"):
         raise Malformed("a scale is not positive")
     return Requirement(
-        name=entry.text("name"),
+        name=entry.name("name"),
         strength=entry.choice("strength", ("hard", "soft")),  # type: ignore[arg-type]
         root=root,
         depends_on=tuple(entry.texts("depends_on")),

@@ -5,31 +5,28 @@ root cause is reported once: names that broken statements declare are known, and
 """
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 
-from stlspec.compiler.bundle import Signal
+from stlspec.compiler.bundle import Param, Signal
 from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
-from stlspec.compiler.inference import Inference
-from stlspec.compiler.model import BROKEN, FORMULA, Declared, Model, Typing
+from stlspec.compiler.inference import MANY_PROBLEMS, Inference
+from stlspec.compiler.model import BROKEN, FORMULA, Binding, Declared, Model, Typing
 from stlspec.compiler.names import declare
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
     Call,
     Expression,
     Index,
-    Infix,
-    Interval,
     LetStatement,
     Name,
-    Operator,
-    Prefix,
     RequirementStatement,
     SignalStatement,
+    bounds,
     post_order,
 )
 from stlspec.lang.parse import Syntax
+from stlspec.lang.spelling import closest
 from stlspec.lang.units import dimension
 from stlspec.source import SourceText, Span
 
@@ -38,56 +35,75 @@ BOUNDINGS = ("tanh", "linear", "none")
 _VANISHING = 1 / 100
 
 
-def check(syntax: Syntax, values: Mapping[str, float] | None = None) -> tuple[Model, tuple[Diagnostic, ...]]:
+def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tuple[Model, tuple[Diagnostic, ...]]:
     """Check a parsed text.
 
-    Args:    values: params bound from outside, in their declared units; they replace the values of the text.
+    Args:    bindings: values of params from outside; they replace those of the text.
     Returns: the model, complete only if no diagnostic is an error; all diagnostics of the text in order.
     """
     problems = list(syntax.diagnostics)
     declared = declare(syntax, problems)
-    silent = (syntax.names | syntax.requirement_names) - declared.places.keys()
+    silent = (syntax.names | syntax.requirement_names | syntax.lost) - declared.places.keys()
     inference = Inference(syntax.source, declared, silent, problems)
-    bound = _params(inference, values or {})
-    signals = _signals(inference)
+    units = _units(inference)
+    params = _params(inference, bindings or {})
+    kinds = _types(inference, units)
     order = _lets(inference)
+    signals = _signals(inference, kinds, units)
     for requirement in declared.requirements.values():
         inference.formula(requirement.formula)
         _clauses(syntax.source, requirement, problems)
     _graph(syntax, declared, problems)
     let_typings = {name: inference.scope[name] for name in order}
-    model = Model(syntax.source, declared, signals, bound, order, let_typings, inference.typings, inference.intervals)
+    model = Model(syntax.source, declared, signals, params, order, let_typings, inference.typings, inference.intervals)
     return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
 
 
-def _params(inference: Inference, values: Mapping[str, float]) -> dict[str, float]:
+def _units(inference: Inference) -> dict[str, Mapping[str, int]]:
+    """Return the unit of each signal; what they are made of may stand behind numbers from now on."""
+    units: dict[str, Mapping[str, int]] = {}
+    for name, statement in inference.declared.signals.items():
+        units[name] = _unit_of(inference, statement) or {}
+        inference.quantities.known |= units[name].keys()
+    return units
+
+
+def _params(inference: Inference, bindings: Mapping[str, Binding]) -> dict[str, Param]:
     """Put params into scope, bound from outside first; return those with a value."""
-    bound: dict[str, float] = {}
+    params: dict[str, Param] = {}
     for name, statement in inference.declared.params.items():
         typing = inference.infer(statement.number) if statement.number else Typing("real", None, True)
-        value = values.get(name, typing.value)
-        if value is not None and typing.kind == "real":
-            bound[name] = value
-            typing = Typing("real", typing.unit, True, value)
+        unit = statement.number.unit.text if statement.number and statement.number.unit else None
+        given = bindings.get(name)
+        if given is not None and typing.kind == "real":
+            unit = unit or given.unit
+            typing = Typing("real", dimension(unit) if unit else None, True, given.value)
+        if typing.value is not None:
+            params[name] = Param(name, typing.value, unit, statement.doc.text if statement.doc else None)
         inference.scope[name] = typing
-    return bound
+    return params
 
 
-def _signals(inference: Inference) -> dict[str, Signal]:
-    """Resolve types, units and ranges of the signals and put them into scope."""
+def _types(inference: Inference, units: Mapping[str, Mapping[str, int]]) -> dict[str, str]:
+    """Put signals into scope; return the type of each."""
+    kinds = {name: _type_of(inference, statement) for name, statement in inference.declared.signals.items()}
+    for name, kind in kinds.items():
+        inference.scope[name] = Typing("real", units[name]) if kind == "real" else FORMULA
+    return kinds
+
+
+def _signals(
+    inference: Inference, kinds: Mapping[str, str], units: Mapping[str, Mapping[str, int]]
+) -> dict[str, Signal]:
+    """Resolve the ranges of signals, in which params and lets may stand."""
     found = {}
     for name, statement in inference.declared.signals.items():
-        unit = _unit_of(inference, statement)
-        if unit is not None:
-            inference.quantities.known |= set(unit)
-        kind = _type_of(inference, statement)
-        inference.scope[name] = Typing("real", unit or {}) if kind == "real" else FORMULA
         low, high = None, None
         if statement.range is not None:
-            low, high = _range_of(inference, statement, kind, unit or {})
+            low, high = _range_of(inference, statement, kinds[name], units[name])
         found[name] = Signal(
             name,
-            "bool" if kind == "bool" else "real",
+            "bool" if kinds[name] == "bool" else "real",
             statement.unit.text if statement.unit else None,
             low,
             high,
@@ -121,8 +137,8 @@ def _type_of(inference: Inference, statement: SignalStatement) -> str:
 
 
 def _choice(source: SourceText, name: Name, what: str, allowed: tuple[str, ...]) -> Diagnostic:
-    close = get_close_matches(name.text, allowed, 1, 0.5)
-    way = f"did you mean `{close[0]}`?" if close else f"write one of {', '.join(allowed)}"
+    close = closest(name.text, allowed, 0.5)
+    way = f"did you mean `{close}`?" if close else f"write one of {', '.join(allowed)}"
     return diagnostic("T205", source=source, span=name.span, what=f"`{name.text}` is not {what}", help=way)
 
 
@@ -147,7 +163,7 @@ def _range_of(
 def _lets(inference: Inference) -> tuple[str, ...]:
     """Type the lets, each after those that it uses, and put them into scope."""
     lets = inference.declared.lets
-    uses = {name: [n for n in names_in(let.body) if n in lets] for name, let in lets.items()}
+    uses = {name: _used_lets(let, lets) for name, let in lets.items()}
     try:
         order = tuple(TopologicalSorter(uses).static_order())
     except CycleError as error:
@@ -161,6 +177,11 @@ def _lets(inference: Inference) -> tuple[str, ...]:
             continue
         inference.scope[name] = _template(inference, let) if let.arguments else inference.infer(let.body)
     return order
+
+
+def _used_lets(let: LetStatement, lets: Mapping[str, LetStatement]) -> list[str]:
+    arguments = {argument.text for argument in let.arguments}
+    return [name for name in names_in(let.body) if name in lets and name not in arguments]
 
 
 def _template(inference: Inference, let: LetStatement) -> Typing:
@@ -197,7 +218,6 @@ def names_in(root: Expression) -> Iterable[str]:
     pending = [root]
     while pending:
         for node in post_order(pending.pop()):
-            operators: tuple[Operator, ...] = ()
             match node:
                 case Name():
                     yield node.text
@@ -205,12 +225,8 @@ def names_in(root: Expression) -> Iterable[str]:
                     yield node.function.text
                 case Index():
                     yield node.name.text
-                case Prefix():
-                    operators = (node.operator,)
-                case Infix():
-                    operators = node.operators
-            intervals: list[Interval] = [o.interval for o in operators if o.interval is not None]
-            pending += [bound for i in intervals for bound in (i.low, i.high)]
+            if not isinstance(node, Index):
+                pending += bounds(node)
 
 
 def _clauses(source: SourceText, requirement: RequirementStatement, problems: list[Diagnostic]) -> None:
@@ -231,7 +247,7 @@ def _graph(syntax: Syntax, declared: Declared, problems: list[Diagnostic]) -> No
     for name, requirement in requirements.items():
         edges[name] = []
         for on in requirement.depends_on:
-            problem = _edge(syntax, declared, requirement, on)
+            problem = _edge(syntax, declared, requirement, on, suggest=len(problems) < MANY_PROBLEMS)
             if problem is not None:
                 problems.append(problem)
             if on.text in requirements and on.text != name:
@@ -240,21 +256,24 @@ def _graph(syntax: Syntax, declared: Declared, problems: list[Diagnostic]) -> No
     if circle is not None:
         problems.append(_circle(syntax.source, declared, circle))
         return
-    complete = syntax.requirement_names <= requirements.keys() and len(problems) == before
+    complete = not syntax.lost and syntax.requirement_names <= requirements.keys() and len(problems) == before
     if complete:
         _weights(syntax.source, declared, edges, problems)
 
 
-def _edge(syntax: Syntax, declared: Declared, requirement: RequirementStatement, on: Name) -> Diagnostic | None:
+def _edge(
+    syntax: Syntax, declared: Declared, requirement: RequirementStatement, on: Name, *, suggest: bool
+) -> Diagnostic | None:
     source, name = syntax.source, requirement.name.text
     if on.text == name:
         return diagnostic("G503", source=source, span=on.span, name=name)
     other = declared.requirements.get(on.text)
     if other is None:
-        if on.text in syntax.requirement_names:
+        if on.text in syntax.requirement_names or on.text in syntax.lost:
             return None
-        close = get_close_matches(on.text, [n for n in declared.requirements if n != name], 1, 0.6)
-        way = f"did you mean `{close[0]}`?" if close else f"state `hard {on.text}: ...`, or remove it"
+        close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
+        what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
+        way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"
         return diagnostic("G502", source=source, span=on.span, name=name, on=on.text, help=way)
     if requirement.strength == "hard" and other.strength == "soft":
         place = Label(other.name.span, "declared soft here", source)
@@ -282,14 +301,15 @@ def _weights(
     above = ancestors(edges)
     names = list(edges)
     hard = [name for name in names if declared.requirements[name].strength == "hard"]
-    hard_bits = sum(1 << i for i, name in enumerate(names) if name in set(hard))
+    hard_bits = sum(1 << i for i, name in enumerate(names) if declared.requirements[name].strength == "hard")
     for name in names if hard else []:
         requirement = declared.requirements[name]
         if requirement.strength == "soft" and not above[name] & hard_bits:
             span = requirement.name.span
             problems.append(diagnostic("G505", source=source, span=span, name=name, hard=hard[0]))
     weights = softmax(dependency_weights(list(above.values())))
-    small = [n for n, w in zip(names, weights, strict=True) if w < _VANISHING * max(weights)]
+    least = _VANISHING * max(weights, default=0.0)
+    small = [n for n, w in zip(names, weights, strict=True) if w < least]
     if small:
         shown = ", ".join(f"`{n}`" for n in small[:5]) + (f" and {len(small) - 5} more" if small[5:] else "")
         span = declared.requirements[small[0]].name.span

@@ -4,21 +4,26 @@ In: source text and the values that `-p` or `params=` give. Out: `CheckResult` f
 diagnostic, or `BundleData` for those that want to run it.
 """
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
+from numbers import Real
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.checks import check
 from stlspec.compiler.lower import lower
-from stlspec.compiler.model import Model
+from stlspec.compiler.model import Binding, Model
 from stlspec.errors import Diagnostic, InputError, SpecError, diagnostic
 from stlspec.lang.parse import parse
-from stlspec.lang.units import NANOSECONDS
+from stlspec.lang.spelling import closest
+from stlspec.lang.units import NANOSECONDS, STEP
 from stlspec.source import SourceText
 
-_VALUE = re.compile(r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*(?P<unit>[A-Za-z]+)?\s*\Z")
+_VALUE = re.compile(
+    r"\s*(?P<number>[+-]?(?:inf|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*(?P<unit>[A-Za-z_][A-Za-z_0-9/*]*)?\s*\Z",
+    re.ASCII,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +47,7 @@ def check_source(source: SourceText, params: Mapping[str, float | str] | None = 
     syntax = parse(source)
     model, diagnostics = check(syntax)
     if params:
-        values = _bind(model, params)
-        model, diagnostics = check(syntax, values)
+        model, diagnostics = check(syntax, _bind(model, params))
     return CheckResult(model, diagnostics)
 
 
@@ -59,51 +63,60 @@ def compile_source(source: SourceText, params: Mapping[str, float | str] | None 
     model = result.model
     if not model.declared.requirements:
         raise SpecError([diagnostic("G506", file=source.name)])
-    unbound = [name for name in model.declared.params if name not in model.values]
+    unbound = [name for name in model.declared.params if name not in model.params]
     if unbound:
         places = model.declared.places
         raise InputError(diagnostic("N106", source=source, span=places[n], name=n) for n in unbound)
     return lower(model)
 
 
-def _bind(model: Model, params: Mapping[str, float | str]) -> dict[str, float]:
+def _bind(model: Model, params: Mapping[str, float | str]) -> dict[str, Binding]:
     """Read the given values into the declared units."""
-    values: dict[str, float] = {}
+    bindings: dict[str, Binding] = {}
     problems: list[Diagnostic] = []
     for name, given in params.items():
         statement = model.declared.params.get(name)
         if statement is None:
-            close = get_close_matches(name, model.declared.params, 1, 0.5)
+            close = closest(name, model.declared.params, 0.5)
             names = ", ".join(f"`{n}`" for n in model.declared.params) or "none"
-            way = f"did you mean `{close[0]}`?" if close else f"the params of this spec: {names}"
+            way = f"did you mean `{close}`?" if close else f"the params of this spec: {names}"
             problems.append(diagnostic("N107", file=model.source.name, name=name, help=way))
             continue
         unit = statement.number.unit.text if statement.number and statement.number.unit else None
-        value = _value(given, unit)
-        if isinstance(value, str):
+        binding = _value(given, unit, is_open=statement.number is None)
+        if isinstance(binding, str):
             shown = str(given)[:30]
-            problems.append(diagnostic("N108", file=model.source.name, name=name, value=shown, problem=value))
+            problems.append(diagnostic("N108", file=model.source.name, name=name, value=shown, problem=binding))
         else:
-            values[name] = value
+            bindings[name] = binding
     if problems:
         raise InputError(problems)
-    return values
+    return bindings
 
 
-def _value(given: float | str, unit: str | None) -> float | str:
-    """Return a value in the declared unit, or what is wrong with it."""
+def _value(given: object, unit: str | None, *, is_open: bool) -> Binding | str:
+    """Return a value in the declared unit, or what is wrong with it; `is_open`: the text gives neither."""
+    own = None
     if isinstance(given, str):
-        if given.strip() in ("inf", "-inf"):
-            return float(given)
         match = _VALUE.match(given)
         if match is None:
             return "it is not a number"
         number, own = float(match["number"]), match["unit"]
-        if own is None or own == unit:
-            return number
-        if own not in NANOSECONDS or unit not in NANOSECONDS:
-            return f"the param is {'in ' + unit if unit else 'without a unit'}"
-        return number * NANOSECONDS[own] / NANOSECONDS[unit]
-    if isinstance(given, bool) or not isinstance(given, int | float) or given != given:
+        if abs(number) == math.inf and "inf" not in match["number"]:
+            return "it is too large to be kept"
+    elif isinstance(given, bool) or not isinstance(given, Real):
         return "it is not a number"
-    return float(given)
+    else:
+        try:
+            number = float(given)
+        except OverflowError:
+            return "it is too large to be kept"
+    if math.isnan(number):
+        return "it is not a number"
+    if own is None or own == unit:
+        return Binding(number)
+    if is_open and own in (*NANOSECONDS, STEP):
+        return Binding(number, own)
+    if own not in NANOSECONDS or unit not in NANOSECONDS:
+        return f"the param is {'in ' + unit if unit else 'without a unit'}"
+    return Binding(number * NANOSECONDS[own] / NANOSECONDS[unit])

@@ -7,7 +7,10 @@ standard library is enough, and `check` stays light.
 
 import math
 from collections.abc import Mapping, Sequence
+from decimal import Context, Decimal
 from graphlib import CycleError, TopologicalSorter
+
+_PRECISE = Context(prec=25)
 
 
 def find_cycle(depends_on: Mapping[str, Sequence[str]]) -> list[str] | None:
@@ -55,7 +58,9 @@ def softmax(weights: Sequence[float]) -> tuple[float, ...]:
     if not weights:
         return ()
     largest = max(weights)
-    powers = [math.exp(w - largest) for w in weights]
+    # Decimal rounds correctly everywhere; the last bit of math.exp depends on the C library, bundles must not.
+    power = {w: float(Decimal(w - largest).exp(_PRECISE)) for w in set(weights)}
+    powers = [power[w] for w in weights]
     total = math.fsum(powers)
     return tuple(p / total for p in powers)
 

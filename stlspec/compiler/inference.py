@@ -6,8 +6,6 @@ one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always
 """
 
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
-from itertools import pairwise
 from typing import Any
 
 from stlspec.compiler.constants import FOLDABLE, fold
@@ -29,9 +27,12 @@ from stlspec.lang.nodes import (
     Operator,
     Prefix,
     Truth,
+    bounds,
     children,
+    operators,
     post_order,
 )
+from stlspec.lang.spelling import closest
 from stlspec.lang.units import SPELLINGS, dimension
 from stlspec.source import SourceText, Span
 
@@ -51,6 +52,10 @@ FUNCTIONS = {
     "rate": (1, 1),
 }
 NOW = frozenset({"now", "t"})
+MANY_PROBLEMS = 300
+"""From here on names are not compared with each other for suggestions: that would cost the square of the text."""
+SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
+"""Operators whose operands are brought to one unit."""
 
 
 class Inference:
@@ -67,13 +72,23 @@ class Inference:
         self.typings: dict[int, Typing] = {}
         self.intervals: dict[int, tuple[int, int | None]] = {}
         self.quantities = Quantities(self._report)
+        self._said: set[tuple[str, str]] = set()
 
     def _report(self, code: str, span: Span, labels: tuple[Label, ...] = (), **fields: Any) -> Typing:
+        """Report a problem; one with a name only once in each statement."""
+        about = (code, fields.get("name", ""))
+        if code.startswith("N") and about in self._said:
+            return BROKEN
+        self._said.add(about)
         self.problems.append(diagnostic(code, source=self.source, span=span, labels=labels, **fields))
         return BROKEN
 
     def infer(self, root: Expression) -> Typing:
-        """Type `root` and everything under it."""
+        """Type an expression of a statement, and everything under it."""
+        self._said.clear()
+        return self._walk(root)
+
+    def _walk(self, root: Expression) -> Typing:
         for node in post_order(root):
             self.typings[id(node)] = self._node(node)
         return self.typings[id(root)]
@@ -113,7 +128,7 @@ class Inference:
         unknown = [w for w in found or () if w not in self.quantities.known]
         if found is None or unknown:
             word = unknown[0] if unknown else ""
-            close = SPELLINGS.get(word) or next(iter(get_close_matches(word, self.quantities.known, 1, 0.6)), "")
+            close = SPELLINGS.get(word) or closest(word, sorted(self.quantities.known))
             way = f"did you mean `{close}`?" if close else "declare a signal with this unit, or remove it"
             return self._report("U302", node.unit.span, unit=node.unit.text, help=way)
         return Typing("real", found, True, node.value)
@@ -129,14 +144,15 @@ class Inference:
             return BROKEN
         if name in NOW:
             time = self.declared.time
-            return Typing("real", None if time.kind == "step" else {time.unit: 1})
-        return self._report("N101", node.span, name=name, help=self._meant(name, [*self.scope, "now"]))
+            counted = time.kind == "step" or not self.declared.time_known
+            return Typing("real", None if counted else {time.unit: 1})
+        return self._report("N101", node.span, name=name, help=self._meant(name))
 
-    @staticmethod
-    def _meant(name: str, candidates: list[str]) -> str:
-        close = get_close_matches(name, candidates, 1, 0.6)
+    def _meant(self, name: str) -> str:
+        few = len(self.problems) < MANY_PROBLEMS
+        close = closest(name, [*self.scope, "now", "true", "false", "inf"]) if few else None
         if close:
-            return f"did you mean `{close[0]}`?"
+            return f"did you mean `{close}`?"
         if name in OPERATOR_WORDS:
             return f"`{name}` is an operator: it needs an operand"
         return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`"
@@ -174,9 +190,8 @@ class Inference:
                 way = f"write `{name}` without arguments"
                 return self._report("N103", node.function.span, name=name, help=way)
             return BROKEN
-        words = [*FUNCTIONS, *OPERATOR_WORDS]
-        close = get_close_matches(name, words, 1, 0.6)
-        way = f"did you mean `{close[0]}`?" if close else f"the functions are {', '.join(FUNCTIONS)}"
+        close = closest(name, [*FUNCTIONS, *OPERATOR_WORDS])
+        way = f"did you mean `{close}`?" if close else f"the functions are {', '.join(FUNCTIONS)}"
         return self._report("N103", node.function.span, name=name, help=way)
 
     def _prefix(self, node: Prefix, below: Typing) -> Typing:
@@ -199,8 +214,19 @@ class Inference:
             left = self.source.slice(node.operands[0].span.to(node.operands[1].span))
             operator = node.operators[1]
             return self._report("S009", operator.span, operator=operator.word, left=_short(left))
+        if self._means_at_least(node, below):
+            return BROKEN
         kinds = [self._need_formula(operand).kind for operand in node.operands]
         return FORMULA if "broken" not in kinds else BROKEN
+
+    def _means_at_least(self, node: Infix, below: list[Typing]) -> bool:
+        """Report `x => 5`, an implication between numbers, as the comparison that was meant."""
+        if any(typing.kind != "real" for typing in below) or self.source.slice(node.operators[0].span) != "=>":
+            return False
+        left, right = (_short(self.source.slice(operand.span)) for operand in node.operands)
+        way = f"`=>` means `implies`; to compare write `{left} >= {right}`"
+        self._report("T201", node.span, help=way)
+        return True
 
     def _comparison(self, node: Infix, below: list[Typing]) -> Typing:
         for operator in node.operators:
@@ -212,11 +238,8 @@ class Inference:
         sign = self.source.slice(node.operators[0].span)
         if not self._all_real(node.operands, sign):
             return BROKEN
-        pairs = list(zip(node.operands, below, strict=True))
-        for left, right in pairwise(pairs):
-            if self.quantities.joined([left, right], "compared") is BROKEN:
-                return BROKEN
-        return FORMULA
+        joined = self.quantities.joined(list(zip(node.operands, below, strict=True)), "compared")
+        return BROKEN if joined is BROKEN else FORMULA
 
     def _arithmetic(self, node: Infix, below: list[Typing]) -> Typing:
         if not self._all_real(node.operands, "arithmetic"):
@@ -235,7 +258,8 @@ class Inference:
         assert not isinstance(unit, Typing)
         if not all(t.constant for t in operands) or op not in FOLDABLE:
             return Typing("real", unit)
-        values = [self.quantities.value_in(t, unit) for t in operands]
+        same = op in SAME_UNIT
+        values = [self.quantities.value_in(t, unit) if same else t.value for t in operands]
         if any(v is None for v in values):
             return Typing("real", unit, True)
         value = fold(op, [v for v in values if v is not None])
@@ -265,7 +289,8 @@ class Inference:
         typing = self.typings[id(node)]
         if typing.kind != "real":
             return typing
-        self._report("T201", node.span, text=_short(self.source.slice(node.span)))
+        text = _short(self.source.slice(node.span))
+        self._report("T201", node.span, help=f"compare it with something, for instance `{text} > 0`")
         self.typings[id(node)] = BROKEN
         return BROKEN
 
@@ -274,28 +299,33 @@ class Inference:
         if operator.interval is None:
             return
         interval = operator.interval
-        bounds = [self.constant(bound, "a bound") for bound in (interval.low, interval.high)]
-        if any(bound.kind == "broken" for bound in bounds):
+        low, high = (self.constant(bound, "a bound") for bound in (interval.low, interval.high))
+        if "broken" in (low.kind, high.kind) or not self.declared.time_known:
             return
-        ticks = ticks_of(interval, (bounds[0], bounds[1]), self.declared.time, self.source, self.problems)
+        ticks = ticks_of(interval, (low, high), self.declared.time, self.source, self.problems)
         if ticks is not None:
             self.intervals[id(interval)] = ticks
 
     def constant(self, node: Expression, what: str) -> Typing:
         """Type an expression that must be a real constant; `what` names its role in the message."""
-        typing = self.infer(node)
-        if typing.kind == "broken":
+        # A bound with a window of its own is refused unread, so that nesting needs no deep stack.
+        windows = next((n for n in post_order(node) if operators(n) and bounds(n)), None)
+        if windows is not None:
+            self.typings[id(windows)] = FORMULA
+            self._need_real(windows, what)
             return BROKEN
+        typing = self._walk(node)
         if not self._need_real(node, what):
             return BROKEN
         if typing.constant:
             return typing
-        culprit = next(n for n in post_order(node) if not children(n) and not self.typings[id(n)].constant)
-        return self._report("T204", node.span, what=what, name=self.source.slice(culprit.span))
+        varying = [n for n in post_order(node) if not self.typings[id(n)].constant]
+        return self._report("T204", node.span, what=what, name=self.source.slice(varying[0].span))
 
     def range_of(self, interval: Interval, unit: Mapping[str, int]) -> tuple[float, float] | None:
         """Return the bounds of a signal's range in the signal's unit; None if reported or not known."""
         values = []
+        self._said.clear()
         for bound in (interval.low, interval.high):
             typing = self.constant(bound, "a range")
             value = self.quantities.value_in(typing, unit) if typing.kind == "real" else None

@@ -11,11 +11,12 @@ from typing import Any
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
 from stlspec.errors import Diagnostic, diagnostic
-from stlspec.lang.nodes import Interval
+from stlspec.lang.nodes import Expression, Interval, Number
 from stlspec.lang.units import NANOSECONDS, STEP, spell
 from stlspec.source import SourceText, Span
 
 _LARGEST = 2**62
+_NOISE = 1e-12
 Ticks = tuple[int, int | None]
 Report = Callable[..., None]
 
@@ -34,7 +35,7 @@ def ticks_of(
         problems.append(diagnostic(code, source=source, span=span, **fields))
 
     for node, bound in zip((interval.low, interval.high), bounds, strict=True):
-        _check_unit(bound, node.span, source.slice(node.span), time, report)
+        _check_unit(bound, node, source.slice(node.span), time, report)
     if len(problems) > before or any(bound.value is None for bound in bounds):
         return None
     low, high = (_in_ticks(bound, time) for bound in bounds)
@@ -52,17 +53,15 @@ def _in_ticks(bound: Typing, time: TimeBase) -> float:
     return bound.value * (NANOSECONDS[word] if word in NANOSECONDS and time.kind != "step" else 1)
 
 
-def _check_unit(bound: Typing, span: Span, text: str, time: TimeBase, report: Report) -> None:
+def _check_unit(bound: Typing, node: Expression, text: str, time: TimeBase, report: Report) -> None:
     """Refuse a bound in the wrong unit, or one without a unit where the spec has one."""
+    span = node.span
     if bound.unit is None:
         if time.kind == "step" or bound.value is None or bound.value in (0, math.inf):
             return
-        simple = text.replace(".", "", 1).isdigit()
-        way = (
-            f"write `{text} {time.unit}`"
-            if simple
-            else f"give the numbers and params in it a unit, such as {time.unit}"
-        )
+        way = f"give the numbers and params in it a unit, such as {time.unit}"
+        if isinstance(node, Number):
+            way = f"write `{text} {time.unit}`"
         report("U303", span, unit=time.unit, help=way)
         return
     shown = f"`{spell(bound.unit)}`" if bound.unit else "a plain number"
@@ -104,6 +103,10 @@ def _check_order(low: float, high: float, span: Span, texts: list[str], spans: l
 def _rounded(low: float, high: float, interval: Interval, texts: list[str], time: TimeBase, report) -> Ticks | None:  # type: ignore[no-untyped-def]
     """Round to ticks; with a period, say which samples a bound between two of them covers."""
     if time.kind == "step":
+        # A whole number of samples may come out of arithmetic with a fault in the last digits: 0.1 * 30.
+        low, high = (
+            round(x) if math.isfinite(x) and abs(x - round(x)) < _NOISE * max(1, x) else x for x in (low, high)
+        )
         ticks = (math.ceil(low), None if high == math.inf else math.floor(high))
         exact = low == ticks[0] and (ticks[1] is None or high == ticks[1])
     else:

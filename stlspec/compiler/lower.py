@@ -7,11 +7,11 @@ and every expression bottom-up, so that neither a deep formula nor a chain of a 
 from collections.abc import Sequence
 from types import MappingProxyType
 
-from stlspec.compiler.bundle import Bounding, BundleData, Param, Requirement, Strength
+from stlspec.compiler.bundle import Bounding, BundleData, Requirement, Strength
 from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.dependencies import ancestors, dependency_weights, softmax
 from stlspec.compiler.horizon import horizons
-from stlspec.compiler.inference import NOW
+from stlspec.compiler.inference import NOW, SAME_UNIT
 from stlspec.compiler.ir import Builder, Interval, reachable
 from stlspec.compiler.model import Model
 from stlspec.compiler.quantities import conversion
@@ -35,7 +35,6 @@ from stlspec.lang.units import Dimension
 
 _UNBOUNDED: Interval = (0, None)
 _COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
-_SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
 
 
 def lower(model: Model) -> BundleData:
@@ -57,25 +56,13 @@ def lower(model: Model) -> BundleData:
         title=model.declared.title,
         time=model.declared.time,
         signals=tuple(model.signals.values()),
-        params=_params(model),
+        params=tuple(model.params.values()),
         requirements=requirements,
         nodes=nodes,
         names=MappingProxyType({name: index[root] for name, root in lets.items() if root in index}),
         raw_weights=raw,
         weights=softmax(raw),
         sources=((model.source.name, model.source.text),),
-    )
-
-
-def _params(model: Model) -> tuple[Param, ...]:
-    return tuple(
-        Param(
-            name,
-            model.values[name],
-            p.number.unit.text if p.number and p.number.unit else None,
-            p.doc.text if p.doc else None,
-        )
-        for name, p in model.declared.params.items()
     )
 
 
@@ -142,8 +129,8 @@ class _Lowering:
 
     def _name(self, name: str) -> int:
         declared = self.model.declared
-        if name in self.model.values:
-            return self._constant(self.model.values[name])
+        if name in self.model.params:
+            return self._constant(self.model.params[name].value)
         if name in declared.lets:
             return self.made[id(declared.lets[name].body)]
         signal = self.model.signals.get(name)
@@ -171,7 +158,7 @@ class _Lowering:
 
     def _call(self, node: Call, below: list[int]) -> int:
         name = node.function.text
-        if name in _SAME_UNIT:
+        if name in SAME_UNIT:
             below = self._converted(node.arguments, below)
         return self._real(name, below)
 
@@ -200,7 +187,7 @@ class _Lowering:
             return self._comparison(node, below)
         if word in ("and", "or"):
             return self.builder.add(word, below)
-        if word in _SAME_UNIT:
+        if word in SAME_UNIT:
             below = self._converted(node.operands, below)
         result = below[0]
         for operator, right in zip(node.operators, below[1:], strict=True):

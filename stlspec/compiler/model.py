@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from stlspec.compiler.bundle import Signal, TimeBase
+from stlspec.compiler.bundle import Param, Signal, TimeBase
 from stlspec.lang.nodes import Expression, LetStatement, ParamStatement, RequirementStatement, SignalStatement
 from stlspec.lang.units import Dimension
 from stlspec.source import SourceText, Span
@@ -36,7 +36,11 @@ FORMULA = Typing("formula")
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """All that a text declares, by name; `places` is where each name was declared first."""
+    """All that a text declares, by name.
+
+    places: where each name was declared first. time_known: False if the `time` statement is broken, so that
+    bounds cannot be judged.
+    """
 
     spec_name: str
     title: str | None
@@ -46,20 +50,29 @@ class Declared:
     lets: Mapping[str, LetStatement]
     requirements: Mapping[str, RequirementStatement]
     places: Mapping[str, Span]
+    time_known: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """A value for a param from outside the text; a unit only where the text declares none."""
+
+    value: float
+    unit: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
     """A spec that was checked.
 
-    signals: with units and ranges resolved. values: of the params that have one. let_order: lets, each after
+    signals: with units and ranges resolved. params: those that have a value. let_order: lets, each after
     those it uses. typings: by `id` of the expression node. intervals: ticks, by `id` of the interval node.
     """
 
     source: SourceText
     declared: Declared
     signals: Mapping[str, Signal]
-    values: Mapping[str, float]
+    params: Mapping[str, Param]
     let_order: tuple[str, ...]
     let_typings: Mapping[str, Typing]
     typings: Mapping[int, Typing]

@@ -49,15 +49,17 @@ def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
         places[name.text] = name.span
         tables[type(statement)][name.text] = statement
     spec = _header(syntax, problems)
+    time = _time(syntax, problems)
     return Declared(
         spec_name=spec.name.text if spec else "",
         title=spec.title.text if spec and spec.title else None,
-        time=_time(syntax, problems),
+        time=time or TimeBase("step", STEP, 1),
         signals=tables[SignalStatement],  # type: ignore[arg-type]
         params=tables[ParamStatement],  # type: ignore[arg-type]
         lets=tables[LetStatement],  # type: ignore[arg-type]
         requirements=tables[RequirementStatement],  # type: ignore[arg-type]
         places=places,
+        time_known=time is not None,
     )
 
 
@@ -79,31 +81,31 @@ def _misplaced(
     return diagnostic("S014", source=syntax.source, span=statement.span, word=word, problem=problem, help=way)
 
 
-def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase:
+def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase | None:
+    """Return the time base; None if the statement that gives it is broken."""
     found = [s for s in syntax.statements if isinstance(s, TimeStatement)]
     problems += [_misplaced(syntax, s, "time", "is given twice", "keep one of the two") for s in found[1:]]
     if not found:
-        return TimeBase("step", STEP, 1)
+        return None if syntax.time_lost else TimeBase("step", STEP, 1)
     return _time_base(syntax, found[0], problems)
 
 
-def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnostic]) -> TimeBase:
-    """Return the time base of a `time` statement; a wrong one is reported and counts as `time step`."""
+def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnostic]) -> TimeBase | None:
+    """Return the time base of a `time` statement; None if it is wrong, which is reported."""
     unit, number = statement.unit.text, statement.number
-    step = TimeBase("step", STEP, 1)
     if unit == STEP and number in (None, 1.0):
-        return step
+        return TimeBase("step", STEP, 1)
     if unit not in NANOSECONDS:
         allowed: Sequence[str] = (STEP, *TIME_UNITS) if number is None else TIME_UNITS
         problems.append(
             diagnostic("U305", source=syntax.source, span=statement.unit.span, unit=unit, units=", ".join(allowed))
         )
-        return step
+        return None
     ticks = NANOSECONDS[unit]
     if number is None:
         return TimeBase("stamps", unit, ticks)
     period = round(number * ticks) if number * ticks < 2**62 else 0
     if period < 1:
         problems.append(diagnostic("I406", source=syntax.source, span=statement.span))
-        return step
+        return None
     return TimeBase("period", unit, ticks, period)

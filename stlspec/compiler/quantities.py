@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
-from stlspec.lang.nodes import Expression, Number, Prefix
+from stlspec.lang.nodes import Expression, Group, Number, Prefix
 from stlspec.lang.units import KNOWN, NANOSECONDS, Dimension, spell
 
 Operand = tuple[Expression, Typing]
@@ -89,7 +89,9 @@ class Quantities:
             return self._plain(exponent, "an exponent")
         if not base[1].unit:
             return base[1].unit
-        node = exponent[0].operand if isinstance(exponent[0], Prefix) else exponent[0]
+        node = exponent[0]
+        while isinstance(node, Group | Prefix):
+            node = node.inner if isinstance(node, Group) else node.operand
         value = exponent[1].value
         if not isinstance(node, Number) or value is None or value != int(value):
             what = f"a value in {_shown(base[1].unit)} needs a whole number as exponent"

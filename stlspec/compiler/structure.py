@@ -5,13 +5,16 @@ later stage may rely on children coming first, on arities, on reals and formulas
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from stlspec.compiler.bundle import Requirement
+from stlspec.compiler.bundle import Requirement, Signal, TimeBase
 from stlspec.compiler.ir import BOUNDED, COMPARISONS, LOGIC, OPERATORS, REAL, Node
+from stlspec.lang.units import NANOSECONDS, STEP
 
 _LARGEST_TICK = 2**62
+_NAME = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
 _ARITY = {
     **dict.fromkeys(["const", "signal", "now", "true", "false", "bool"], (0, 0)),
     **dict.fromkeys(("neg abs sqrt exp log sin cos delta rate not next prev").split(), (1, 1)),
@@ -55,6 +58,15 @@ class Reader:
         found = self.values.get(key)
         if not isinstance(found, str):
             raise self._wrong(key, "a text")
+        if not found.isascii() and any("\ud800" <= c <= "\udfff" for c in found):
+            raise self._wrong(key, "a text of whole characters")
+        return found
+
+    def name(self, key: str) -> str:
+        """Return the name under `key`."""
+        found = self.text(key)
+        if _NAME.match(found) is None:
+            raise self._wrong(key, "a name")
         return found
 
     def optional_text(self, key: str) -> str | None:
@@ -150,13 +162,43 @@ def _check_value(node: Node, where: str, signals: Mapping[str, str]) -> None:
         raise Malformed(f"{where} (`{node.op}`) has a wrong value")
 
 
+def check_names(*groups: Sequence[str]) -> None:
+    """Check that every name is one of the language, and that no two things share one."""
+    names = [name for group in groups for name in group]
+    wrong = next((name for name in names if _NAME.match(name) is None), None)
+    if wrong is not None:
+        raise Malformed(f"{wrong[:30]!r} is not a name")
+    if len(set(names)) != len(names):
+        raise Malformed("two of its parts share a name")
+
+
 def check_requirements(requirements: Sequence[Requirement], nodes: Sequence[Node]) -> None:
-    """Check that requirements have names of their own, are formulas, and depend on requirements."""
-    names = {r.name for r in requirements}
-    if len(names) != len(requirements) or not names:
-        raise Malformed("its requirements are missing or share a name")
+    """Check that there are requirements, that they are formulas, and depend on requirements that may come first."""
+    strengths = {r.name: r.strength for r in requirements}
+    if not requirements:
+        raise Malformed("it has no requirement")
     for requirement in requirements:
+        name, before = requirement.name, requirement.depends_on
         if nodes[requirement.root].op not in LOGIC:
-            raise Malformed(f"requirement {requirement.name!r} is not a formula")
-        if not set(requirement.depends_on) <= names:
-            raise Malformed(f"requirement {requirement.name!r} depends on a requirement that is not there")
+            raise Malformed(f"requirement `{name}` is not a formula")
+        if not set(before) <= strengths.keys() or len(set(before)) != len(before):
+            raise Malformed(f"requirement `{name}` depends on a requirement that is not there, or twice on one")
+        if requirement.strength == "hard" and any(strengths[on] == "soft" for on in before):
+            raise Malformed(f"hard requirement `{name}` depends on a soft one")
+
+
+def check_signals(signals: Sequence[Signal]) -> None:
+    """Check that ranges have two ends in order, and that only real signals have one."""
+    for signal in signals:
+        ends = [end for end in (signal.low, signal.high) if end is not None]
+        if ends and (len(ends) == 1 or ends[0] >= ends[1] or signal.type == "bool"):
+            raise Malformed(f"the range of signal `{signal.name}` makes no sense")
+
+
+def check_time(time: TimeBase) -> None:
+    """Check that a time base is one that a `time` statement can give."""
+    expected = 1 if time.kind == "step" else NANOSECONDS.get(time.unit)
+    if time.ticks_per_unit != expected or (time.kind == "step") != (time.unit == STEP):
+        raise Malformed("its unit of time does not fit its kind of time")
+    if (time.kind == "period") != (time.period is not None):
+        raise Malformed("its period does not fit its kind of time")

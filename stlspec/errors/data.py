@@ -77,8 +77,7 @@ CODES: tuple[Code, ...] = (
         "D807",
         "a sample outside the declared range",
         "error",
-        message="signal '{signal}' is {value} at sample {sample} (time {time}), outside its range "
-        "[{low}, {high}]",
+        message="signal '{signal}' is {value} at sample {sample} (time {time}), outside its range [{low}, {high}]",
         help="widen the range in the declaration of '{signal}', or repair the data",
         explanation="A declared range is a promise: the online enclosures and the lints rely on it, so a "
         "sample outside it is refused everywhere.",
@@ -116,8 +115,7 @@ CODES: tuple[Code, ...] = (
         "error",
         message="the spec measures time in {unit}, but the data has no 'time'",
         help="add a 'time' column in {unit}, or declare the sampling period: `time 100 ms`",
-        explanation="With `time s` the stamps come with the data. Without them bounds in seconds mean "
-        "nothing.",
+        explanation="With `time s` the stamps come with the data. Without them bounds in seconds mean nothing.",
         bad="# time s\nx\n1\n2\n",
         good="# time s\ntime,x\n0,1\n0.5,2\n",
         kind="shown",

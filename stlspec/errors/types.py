@@ -11,7 +11,7 @@ CODES: tuple[Code, ...] = (
         "error",
         message="a formula is needed here, but this is a number",
         label="not true or false by itself",
-        help="compare it with something, for instance `{text} > 0`",
+        help="{help}",
         explanation="Operators such as `always` and `and` join statements that are true or false at a sample; a real "
         "signal becomes one by a comparison.",
         bad=_D + "hard safe: always d\n",

@@ -5,15 +5,17 @@ Out: one diagnostic. Each habit or slip that can be told from the tokens has a f
 `describe` asks them in a fixed order; the last one only names what was found and what was expected.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
+from itertools import pairwise
 
 from lark import Token
 
 from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.lang.spelling import closest
 from stlspec.lang.statements import STATEMENT_WORDS, is_word
 from stlspec.lang.tree import span_of
+from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
 
 OPERATOR_WORDS = (
@@ -26,14 +28,48 @@ _RESERVED = frozenset(
         "release next prev wnext wprev not and or xor implies iff true false inf"
     ).split()
 )
-_CLAUSES = frozenset({"DEPENDS", "SCALE", "BOUND", "STRING"})
+_TEMPORAL = frozenset(
+    (
+        "ALWAYS G GLOBALLY ALW ALW_ EVENTUALLY F FINALLY EV EV_ HISTORICALLY H HIST HIST_ ONCE O ONCE_ "
+        "UNTIL U UNTIL_ SINCE S SINCE_ UNLESS W RELEASE R"
+    ).split()
+)
+"""Terminals of the words that take an interval."""
 _CLAUSE_WORDS = {"depends": "on", "scale": "NUMBER", "bound": "NAME"}
 _SHOWN = {
     "NAME": "a name",
     "NUMBER": "a number",
     "STRING": "a quoted text",
+    "UNIT": "a unit",
     "$END": "the end of the statement",
 }
+_SIGNS = {
+    "^": "**",
+    "≥": ">=",
+    "≤": "<=",
+    "≠": "!=",
+    "¬": "not",
+    "∧": "and",
+    "∨": "or",
+    "→": "->",
+    "⇒": "->",
+    "↔": "<->",
+    "⇔": "<->",
+    "□": "always",
+    "◻": "always",
+    "◇": "eventually",
+    "⊤": "true",
+    "⊥": "false",
+    "∞": "inf",
+    "·": "*",
+    "×": "*",
+    "−": "-",
+    "–": "-",
+    "'": '"',
+    "“": '"',
+    "”": '"',
+}
+"""Characters that the language does not have, and what is written for them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +78,7 @@ class Failure:
 
     at: index of the token that does not fit; len(tokens) if the statement ends too early. expected: terminals
     that fit there. brackets: the opening brackets still open. beginning: nothing before the token belongs to
-    its statement.
+    its statement. names: what the text declares.
     """
 
     source: SourceText
@@ -51,6 +87,7 @@ class Failure:
     expected: frozenset[str]
     brackets: tuple[Token, ...]
     beginning: bool
+    names: frozenset[str]
 
     @property
     def token(self) -> Token | None:
@@ -87,7 +124,9 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
     if token.type == "BAD_STRING":
         return failure.error("S006")
     if token.type in ("BAD_CHARACTER", "LBRACE", "RBRACE"):
-        return failure.error("S005", character=_quoted(str(token)))
+        sign = "," if str(token) == ";" and failure.brackets else _SIGNS.get(str(token))
+        way = f"write `{sign}` in its place" if sign else "remove it; words and signs of the language are plain ASCII"
+        return failure.error("S005", character=_quoted(str(token)), help=way)
     if token.type == "WALRUS":
         name = str(failure.tokens[failure.at - 1]) if failure.at else "p"
         return failure.error("S012", name=name)
@@ -101,8 +140,10 @@ def _no_statement(failure: Failure) -> Diagnostic | None:
     word = str(failure.token)
     if failure.at + 1 < len(failure.tokens) and failure.tokens[failure.at + 1].type == "WALRUS":
         return failure.error("S012", at=span_of(failure.tokens[failure.at + 1]), name=word)
-    close = get_close_matches(word, STATEMENT_WORDS, 1, 0.6) if is_word(failure.token) else []
-    way = f"did you mean `{close[0]}`?" if close else f"begin with one of: {', '.join(STATEMENT_WORDS)}"
+    if failure.token.type in ("RPAR", "RSQB"):
+        return failure.error("S019", bracket=word)
+    close = closest(word, STATEMENT_WORDS) if is_word(failure.token) else None
+    way = f"did you mean `{close}`?" if close else f"begin with one of: {', '.join(STATEMENT_WORDS)}"
     return failure.error("S003", word=_quoted(word), help=way)
 
 
@@ -135,9 +176,11 @@ def _misspelt_operator(failure: Failure) -> Diagnostic | None:
         candidates.append(failure.at)
     for i in candidates:
         word = str(failure.tokens[i])
-        close = get_close_matches(word, OPERATOR_WORDS, 1, 0.75)
-        if i > 2 and close and close[0] != word and failure.tokens[i].type == "NAME":
-            return failure.error("S018", at=span_of(failure.tokens[i]), word=word, meant=close[0])
+        if i < 3 or failure.tokens[i].type != "NAME" or word in failure.names:
+            continue
+        close = closest(word, OPERATOR_WORDS, 0.75)
+        if close:
+            return failure.error("S018", at=span_of(failure.tokens[i]), word=word, meant=close)
     return None
 
 
@@ -148,8 +191,8 @@ def _misspelt_clause(failure: Failure) -> Diagnostic | None:
     words = [w for w in words if w not in ("name", "number", "string")]
     if token is None or not is_word(token):
         return None
-    close = get_close_matches(str(token), words, 1, 0.7)
-    return failure.error("S018", word=str(token), meant=close[0]) if close else None
+    close = closest(str(token), words, 0.7)
+    return failure.error("S018", word=str(token), meant=close) if close else None
 
 
 def _late_clause(failure: Failure) -> Diagnostic | None:
@@ -170,6 +213,51 @@ def _late_clause(failure: Failure) -> Diagnostic | None:
     return None
 
 
+def _open_interval(failure: Failure) -> Diagnostic | None:
+    """`(0, 5]` or `[0, 5)` behind a temporal word."""
+    token, tokens = failure.token, failure.tokens
+    if token is None or not failure.brackets:
+        return None
+    opening = tokens.index(failure.brackets[-1])
+    if not opening or tokens[opening - 1].type not in _TEMPORAL:
+        return None
+    inside = tokens[opening + 1 :]
+    ends = next((i for i, t in enumerate(inside) if t.type in ("RPAR", "RSQB")), None)
+    comma = next((i for i, t in enumerate(inside) if t.type in ("COMMA", "COLON")), None)
+    if ends is None or comma is None or not 0 < comma < ends - 1 or any(_compares(t) for t in inside[:comma]):
+        return None
+    if token not in (inside[comma], inside[ends]) or {tokens[opening].type, inside[ends].type} == {"LSQB", "RSQB"}:
+        return None
+    low, high = _text(failure, inside[:comma]), _text(failure, inside[comma + 1 : ends])
+    whole = span_of(tokens[opening]).to(span_of(inside[ends]))
+    return failure.error("S025", at=whole, low=low, high=high)
+
+
+def _compares(token: Token) -> bool:
+    return token.type in ("LT", "LE", "GT", "GE", "EQ", "NE", "ASSIGN")
+
+
+def _text(failure: Failure, tokens: Sequence[Token]) -> str:
+    return failure.source.slice(Span(span_of(tokens[0]).start, span_of(tokens[-1]).end))
+
+
+def _stray_interval(failure: Failure) -> Diagnostic | None:
+    """An interval behind something that takes none: `next[0, 5]`, `d[0, 5]`."""
+    token, tokens = failure.token, failure.tokens
+    if token is None:
+        return None
+    if token.type == "LSQB":
+        opening = failure.at
+    elif token.type in ("COMMA", "COLON") and failure.brackets and failure.brackets[-1].type == "LSQB":
+        opening = tokens.index(failure.brackets[-1])
+    else:
+        return None
+    before = tokens[opening - 1]
+    if not opening or not is_word(before) or before.type in _TEMPORAL or before.type == "IN":
+        return None
+    return failure.error("S024", at=span_of(tokens[opening]), word=str(before))
+
+
 def _open_bracket(failure: Failure) -> Diagnostic | None:
     """A bracket that is never closed, or closed by one of the other kind."""
     if not failure.brackets:
@@ -177,11 +265,30 @@ def _open_bracket(failure: Failure) -> Diagnostic | None:
     opening = failure.brackets[-1]
     closing = ")" if opening.type == "LPAR" else "]"
     wanted = "RPAR" if opening.type == "LPAR" else "RSQB"
-    if wanted not in failure.expected:
+    if wanted not in failure.expected or (failure.token is not None and failure.token.type == "COMMA"):
         return None
-    before = failure.tokens[failure.at - 1]
     label = Label(span_of(opening), "opened here", failure.source)
-    return failure.error("S004", labels=(label,), closing=closing, before=_quoted(str(before)))
+    if failure.token is not None and failure.token.type in ("RPAR", "RSQB"):
+        way = f"write `{closing}` in place of `{failure.token}`"
+        return failure.error("S004", labels=(label,), closing=closing, help=way)
+    last = _last_bound(failure, failure.tokens.index(opening)) if closing == "]" else None
+    before = last if last is not None else failure.tokens[failure.at - 1]
+    at = Span(span_of(last).end, span_of(last).end) if last is not None else None
+    way = f"write `{closing}` after {_quoted(str(before))}"
+    return failure.error("S004", at=at, labels=(label,), closing=closing, help=way)
+
+
+def _last_bound(failure: Failure, opening: int) -> Token | None:
+    """Return the last bound of an open interval that ran into the formula, None if the failure comes first.
+
+    `[0, T (d > 1)` reads as a call of T, and `[0, 5 d > 1` as 5 in a unit d.
+    """
+    for token, after in pairwise(failure.tokens[opening + 1 : failure.at]):
+        if str(token) in failure.names and after.type == "LPAR":
+            return token
+        if token.type == "NUMBER" and is_word(after) and not is_unit_word(str(after)):
+            return token
+    return None
 
 
 def _stray_bracket(failure: Failure) -> Diagnostic | None:
@@ -197,8 +304,12 @@ def _no_comma(failure: Failure) -> Diagnostic | None:
         return None
     if failure.token is None or failure.token.type not in ("NUMBER", "NAME", "INF"):
         return None
-    low = str(failure.tokens[failure.at - 1])
-    return failure.error("S021", low=low, high=str(failure.token))
+    tokens, opening = failure.tokens, failure.tokens.index(failure.brackets[-1])
+    ends = next((i for i in range(failure.at, len(tokens)) if tokens[i].type == "RSQB"), failure.at + 1)
+    low, high = _text(failure, tokens[opening + 1 : failure.at]), _text(failure, tokens[failure.at : ends])
+    # `[0..5]` reads as the numbers `0.` and `.5`.
+    dotted = low.endswith(".") and high.startswith(".")
+    return failure.error("S021", low=low[:-1] if dotted else low, high=high[1:] if dotted else high)
 
 
 def _cut_off(failure: Failure) -> Diagnostic | None:
@@ -215,13 +326,15 @@ def _plain(failure: Failure) -> Diagnostic:
 
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _unreadable,
+    _late_clause,
     _no_statement,
     _glued_statement,
     _reserved_name,
     _misspelt_operator,
     _misspelt_clause,
-    _late_clause,
     _no_comma,
+    _open_interval,
+    _stray_interval,
     _open_bracket,
     _cut_off,
 )
@@ -249,7 +362,7 @@ def _expected(terminals: frozenset[str]) -> str:
     else:
         signs_shown = [f"`{s}`" for t, s in signs.items() if t in terminals and t in ("RPAR", "RSQB", "COMMA")]
     named = signs_shown + named
-    words = ["depends on", "scale", "bound", "unit", "in", "from"]
+    words = ["depends on", "on", "scale", "bound", "unit", "in", "from"]
     named += [f"`{w}`" for w in words if w.split()[0].upper().replace("UNIT", "UNIT_WORD") in terminals]
     shown = named[:5]
     if len(shown) < 2:

@@ -224,6 +224,24 @@ def children(node: Expression) -> tuple[Expression, ...]:
     return ()
 
 
+def operators(node: Expression) -> tuple[Operator, ...]:
+    """Return the operators of `node`, none for what is no operation."""
+    match node:
+        case Prefix(_, operator, _):
+            return (operator,)
+        case Infix(_, found, _):
+            return found
+    return ()
+
+
+def bounds(node: Expression) -> tuple[Expression, ...]:
+    """Return the expressions in square brackets that belong to `node`: bounds of its intervals, its index."""
+    if isinstance(node, Index):
+        return (node.index,)
+    intervals = [operator.interval for operator in operators(node) if operator.interval is not None]
+    return tuple(bound for interval in intervals for bound in (interval.low, interval.high))
+
+
 def post_order(root: Expression) -> Iterator[Expression]:
     """Yield every expression under `root`, operands before what holds them; deep trees need no deep stack."""
     pending: list[tuple[Expression, bool]] = [(root, False)]

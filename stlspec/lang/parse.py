@@ -23,6 +23,7 @@ from stlspec.lang.nodes import (
     Group,
     Index,
     Infix,
+    Interval,
     LetStatement,
     Number,
     Prefix,
@@ -30,10 +31,12 @@ from stlspec.lang.nodes import (
     SignalStatement,
     Statement,
     Text,
+    UnsupportedStatement,
+    bounds,
     children,
     post_order,
 )
-from stlspec.lang.statements import STATEMENT_WORDS, cut, first_on_line, is_word
+from stlspec.lang.statements import DECLARING, STATEMENT_WORDS, cut, first_on_line, is_word, lost_names
 from stlspec.lang.tree import TreeBuilder, span_of
 from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
@@ -42,7 +45,13 @@ DEEPEST = 200
 _TALLEST_STACK = 5000
 _PREFIX_RULES = frozenset({"always", "eventually", "historically", "once", "next", "prev"})
 _INFIX_RULES = frozenset({"until", "since", "unless", "release"})
-_OPERAND_STARTS = frozenset({"NAME", "NUMBER", "LPAR", "TRUE", "FALSE", "INF", "MINUS", "NOT", "BANG", "LSQB"})
+_OPERAND_STARTS = frozenset(
+    (
+        "NAME NUMBER LPAR TRUE FALSE INF MINUS NOT BANG LSQB ALWAYS EVENTUALLY HISTORICALLY ONCE NEXT PREV WNEXT WPREV"
+    ).split()
+)
+_NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
+"""Words that after a number begin a statement or a clause, in the wrong place: never units."""
 _END = "$END"
 
 
@@ -50,8 +59,8 @@ _END = "$END"
 class Syntax:
     """What a text says: its good statements, and one diagnostic for each broken one.
 
-    names, requirement_names: what the text declares, broken statements included, so that a use of such a name
-    is not reported a second time.
+    names: what the text declares. lost: more names that broken statements may have been meant to declare; uses of
+    either are not reported a second time. time_lost: a broken statement may have been the `time` statement.
     """
 
     source: SourceText
@@ -60,6 +69,8 @@ class Syntax:
     comments: tuple[Text, ...]
     names: frozenset[str]
     requirement_names: frozenset[str]
+    lost: frozenset[str] = frozenset()
+    time_lost: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +103,16 @@ def parse(source: SourceText) -> Syntax:
     pieces = cut(source, automaton.lark)
     statements: list[Statement] = []
     problems: list[Diagnostic] = []
+    broken: list[Sequence[Token]] = []
     for tokens in pieces.statements:
         rest = tokens
         while rest:
-            feed = _Feed(automaton, source, rest, pieces.names)
-            node, problem, used = feed.run("statement")
+            node, problem, used = _Feed(automaton, source, rest, pieces.names).run("statement")
             if node is not None:
                 statements.append(node)
             if problem is not None:
                 problems.append(problem)
+                broken.append(rest if node is None else _from(rest, problem))
             rest = rest[used:]
     if not pieces.statements:
         problems.append(diagnostic("S016", source=source, span=Span(0, 0)))
@@ -112,7 +124,16 @@ def parse(source: SourceText) -> Syntax:
         pieces.comments,
         pieces.names,
         pieces.requirement_names,
+        lost_names(broken),
+        any(tokens[0].type not in DECLARING | {"HARD", "SOFT", "SPEC", "USE", "EXPECT"} for tokens in broken),
     )
+
+
+def _from(tokens: Sequence[Token], problem: Diagnostic) -> Sequence[Token]:
+    """Return the tokens from where a problem begins."""
+    assert problem.span is not None
+    start = problem.span.start
+    return [token for token in tokens if span_of(token).start >= start] or tokens[-1:]
 
 
 def parse_formula(
@@ -142,7 +163,8 @@ class _Feed:
         self.automaton = automaton
         self.source = source
         self.tokens = tokens
-        self.names = names | self._arguments()
+        arguments = self._arguments()
+        self.names = names | arguments if arguments else names
         self.brackets: list[Token] = []
 
     def _arguments(self) -> frozenset[str]:
@@ -163,6 +185,9 @@ class _Feed:
         tokens = self.tokens
         if start == "statement" and not self._accepts(tokens[0].type):
             return None, describe(self._failure(0, beginning=True)), len(tokens)
+        if tokens[0].type == "EXPECT":
+            # Not run by this version, whatever stands in it: one diagnostic is enough.
+            return UnsupportedStatement(span_of(tokens[0]), "expect"), None, len(tokens)
         i = 0
         while i < len(tokens):
             token, width = self._read(i)
@@ -247,11 +272,11 @@ class _Feed:
             return False
         after = self.tokens[i + 1].type
         automaton = self.automaton
-        return after in _OPERAND_STARTS or after in automaton.contextual or after.lower() in _PREFIX_RULES
+        return after in _OPERAND_STARTS or after in automaton.contextual
 
     def _is_unit(self, i: int) -> bool:
         token = self.tokens[i]
-        if token.line != self.tokens[i - 1].line or not is_word(token):
+        if token.line != self.tokens[i - 1].line or not is_word(token) or token.type in _NEVER_UNITS:
             return False
         if token.type in self.automaton.infix_aliases and str(token) not in self.names:
             return not self._operand_follows(i)
@@ -280,17 +305,23 @@ class _Feed:
 
     def _failure(self, i: int, *, beginning: bool = False) -> Failure:
         row = self.state.parse_conf.states[self.state.state_stack[-1]]
-        expected = frozenset(t for t in row if t.isupper() and t != "UNIT" and self._accepts(t))
-        return Failure(self.source, tuple(self.tokens), i, expected, tuple(self.brackets), beginning)
+        # After a number a unit always fits: it is named only where nothing else does.
+        expected = frozenset(t for t in row if t.isupper() and self._accepts(t))
+        expected = expected - {"UNIT"} or expected
+        return Failure(self.source, tuple(self.tokens), i, expected, tuple(self.brackets), beginning, self.names)
 
     def _too_deep(self, statement: Any) -> Diagnostic | None:
-        for expression in _expressions(statement):
+        """Refuse what nests too deep, in bounds and indices too."""
+        pending = [(expression, 0) for expression in _expressions(statement)]
+        while pending:
+            root, outer = pending.pop()
             depth: dict[int, int] = {}
-            for node in post_order(expression):
-                below = max((depth[id(child)] for child in children(node)), default=0)
+            for node in post_order(root):
+                below = max((depth[id(child)] for child in children(node)), default=outer)
                 depth[id(node)] = below + _nests(node)
                 if depth[id(node)] > DEEPEST:
                     return diagnostic("S007", source=self.source, span=node.span, deepest=DEEPEST)
+                pending += [(bound, outer + 1) for bound in bounds(node)]
         return None
 
 
@@ -310,6 +341,8 @@ def _expressions(statement: Any) -> tuple[Expression, ...]:
             return (statement.body,)
         case RequirementStatement():
             return (statement.formula,)
+        case SignalStatement(range=Interval(_, low, high)):
+            return (low, high)
         case Number() | Group() | Prefix() | Infix() | Call() | Index():
             return (statement,)
     return ()

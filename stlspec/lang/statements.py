@@ -8,6 +8,7 @@ so that a missing bracket never swallows the next statement; indentation has no 
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from lark import Lark, Token
 
@@ -82,3 +83,18 @@ def _begins_statement(tokens: Sequence[Token], i: int) -> bool:
         case "USE":
             return after.type == "STRING"
     return False
+
+
+def lost_names(broken: Sequence[Sequence[Token]]) -> frozenset[str]:
+    """Return the names that broken statements may have been meant to declare.
+
+    What stands after a statement's word, every word of a broken `signal` or `param`, and the first two words of
+    a line that begins with no statement's word (`sginal d`, or `d` where the word was lost).
+    """
+    found: set[str] = set()
+    for tokens in broken:
+        first = tokens[0].type
+        words = list(tokens) if first in ("SIGNAL", "PARAM") else list(tokens[:2])
+        words += [after for word, after in pairwise(tokens) if word.type in _RESERVED_STARTS]
+        found.update(str(token) for token in words if is_word(token))
+    return frozenset(found)

@@ -19,6 +19,7 @@ from stlspec.compiler.ir import Node
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, UsageError, diagnostic
 from stlspec.semantics.layout import arrange
+from stlspec.semantics.memory import keep_freed_memory
 from stlspec.semantics.reach import bounded_reach
 from stlspec.semantics.reasons import CONSTANT, VACUOUS, reason_text
 from stlspec.semantics.robustness import batches, evaluate_at, evaluate_nodes, shown
@@ -27,6 +28,7 @@ from stlspec.traces import Trace, make_trace
 
 Floats = NDArray[np.float64]
 End = Literal["clip", "strict"]
+"""What `end` may be; other texts are refused when a call is made."""
 Result = TypeVar("Result", covariant=True)
 
 
@@ -191,7 +193,7 @@ def evaluate(
     bundle: BundleData,
     signals: Mapping[str, ArrayLike | Sequence[ArrayLike]],
     time: ArrayLike | Sequence[ArrayLike] | None = None,
-    end: End = "clip",
+    end: str = "clip",
     at: int = 0,
     file: str | None = None,
 ) -> Evaluation[Any]:
@@ -215,6 +217,7 @@ def evaluate(
         UsageError: `end` or `at` is not possible.
     """
     _check_end(end)
+    keep_freed_memory()
     used = {str(node.value) for node in bundle.nodes if node.op in ("signal", "bool")}
     layout = arrange([s.name for s in bundle.signals], signals, time, file)
     traces = [
@@ -226,9 +229,10 @@ def evaluate(
     return _evaluate_batch(bundle, traces, layout.ragged, end, at)
 
 
-def evaluate_trace(bundle: BundleData, trace: Trace, end: End = "clip", at: int = 0) -> Evaluation[RequirementResult]:
+def evaluate_trace(bundle: BundleData, trace: Trace, end: str = "clip", at: int = 0) -> Evaluation[RequirementResult]:
     """Evaluate all requirements on one trace that was made before; else as `evaluate`."""
     _check_end(end)
+    keep_freed_memory()
     sample = _sample(trace, at)
     if end == "strict":
         _check_length(bundle, trace, sample)
@@ -243,7 +247,7 @@ def evaluate_trace(bundle: BundleData, trace: Trace, end: End = "clip", at: int 
 
 
 def _evaluate_batch(
-    bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: End, at: int
+    bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: str, at: int
 ) -> Evaluation[BatchResult]:
     samples = [_sample(trace, at) for trace in traces]
     if end == "strict":

@@ -31,7 +31,6 @@ _BINARY: dict[str, np.ufunc] = {
     "sub": np.subtract,
     "mul": np.multiply,
     "div": np.divide,
-    "pow": np.power,
     "min": np.minimum,
     "max": np.maximum,
     "hypot": np.hypot,
@@ -69,11 +68,20 @@ def _values(node: Node, operands: Sequence[Floats], trace: Trace) -> Floats:
         return _change(operands[0], trace, per_unit=op == "rate")
     if op in _UNARY:
         return np.asarray(_UNARY[op](operands[0]))
+    if op == "pow":
+        return _power(operands[0], operands[1])
     values = np.asarray(operands[0])
     for operand in operands[1:]:
         values = np.asarray(_BINARY[op](values, operand))
     # Which zero the minimum of 0.0 and -0.0 is depends on the processor; 1 / min(x, y) must not.
     return np.asarray(values + 0.0) if op in ("min", "max") else values
+
+
+def _power(base: Floats, exponent: Floats) -> Floats:
+    """Raise to a power; numpy's square root for the exponent 0.5 misses that (-inf) ** 0.5 is inf."""
+    if exponent.ndim == 0 and exponent == 0.5:
+        return np.asarray(np.where(np.isinf(base), np.inf, np.sqrt(base) + 0.0))
+    return np.asarray(np.power(base, exponent))
 
 
 def _per_sample(values: Floats, trace: Trace) -> Floats:

@@ -32,7 +32,7 @@ _TEMPORAL: dict[str, Callable[..., Floats]] = {
     "since": windows.since,
 }
 # Of a batch this many numbers of a signal are evaluated at a time.
-_BATCH = 2**18
+_BATCH = 2**16
 _HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})
 
 
@@ -158,6 +158,6 @@ def _compare(op: str, left: Floats, right: Floats, out: Floats) -> None:
     if op == "eq":
         np.negative(out, out=out)
     # Equal infinities are on the bound too; their difference is no number.
-    tied = np.broadcast_to(np.equal(left, right), out.shape)
+    tied = np.equal(left, right)
     if tied.any():
-        out[tied] = TIE if op in _HOLDS_ON_BOUND else -TIE
+        out[np.broadcast_to(tied, out.shape)] = TIE if op in _HOLDS_ON_BOUND else -TIE

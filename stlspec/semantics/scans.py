@@ -1,12 +1,10 @@
 """Suffix scans: running extremum and running until, from the last sample back to the first.
 
 In: arrays (n_samples, n_traces), time along axis 0. Out: at every sample the scan of all samples from it on.
-Both scans are associative, so a long array is cut into lanes that are scanned side by side, one numpy call a
-step for all lanes; the heads of the lanes are scanned by the same function, and what lies behind a lane is
-then added to all its samples at once. The number of numpy calls grows with the square root of the length.
+Both scans are associative. A long array is taken block by block from its end; a block is cut into lanes that
+are scanned side by side, one numpy call a step for all lanes, and what lies behind a lane is then added to
+all its samples at once. So there is no loop over samples, and all scratch memory stays in the cache.
 """
-
-from math import isqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +12,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _SMALL = 4096
+_BLOCK = 2**16
+_STEPS = 32
 _MANY_TRACES = 128
 
 
@@ -34,14 +34,10 @@ def suffix_extremum(extremum: np.ufunc, values: Floats, out: Floats) -> None:
         for i in range(n - 2, -1, -1):
             extremum(values[i], out[i + 1], out=out[i])
         return
-    identity = np.inf if extremum is np.minimum else -np.inf
-    lanes = _to_lanes(values, identity)
-    for j in range(len(lanes) - 2, -1, -1):
-        extremum(lanes[j], lanes[j + 1], out=lanes[j])
-    heads = np.empty(lanes.shape[1:])
-    suffix_extremum(extremum, lanes[0], heads)
-    extremum(lanes[:, :-1], heads[1:], out=lanes[:, :-1])
-    _from_lanes(lanes, out)
+    beyond = np.full((1, k), np.inf if extremum is np.minimum else -np.inf)
+    for block in _blocks(n, k):
+        _extremum_of_block(extremum, values[block], beyond, out[block])
+        beyond = out[block.start : block.start + 1]
 
 
 def suffix_until(left: Floats, right: Floats, out: Floats) -> None:
@@ -54,26 +50,50 @@ def suffix_until(left: Floats, right: Floats, out: Floats) -> None:
     Args:    left, right: (n_samples, n_traces). out: the same shape, another array.
     """
     n, k = left.shape
+    beyond = np.full((1, k), -np.inf)
     if n * k <= _SMALL:
-        _until_by_doubling(left, right, out)
+        _until_by_doubling(left, right, beyond, out)
         return
     if k >= _MANY_TRACES:
         _until_by_rows(left, right, out)
         return
+    for block in _blocks(n, k):
+        _until_of_block(left[block], right[block], beyond, out[block])
+        beyond = out[block.start : block.start + 1]
+
+
+def _blocks(n: int, k: int) -> list[slice]:
+    """Cut n samples into blocks, the last one first."""
+    rows = max(_BLOCK // k, 2)
+    return [slice(max(0, end - rows), end) for end in range(n, 0, -rows)]
+
+
+def _extremum_of_block(extremum: np.ufunc, values: Floats, beyond: Floats, out: Floats) -> None:
+    lanes = _to_lanes(values, np.inf if extremum is np.minimum else -np.inf)
+    for j in range(len(lanes) - 2, -1, -1):
+        extremum(lanes[j], lanes[j + 1], out=lanes[j])
+    heads = np.concatenate([lanes[0], beyond])
+    extremum.accumulate(heads[::-1], axis=0, out=heads[::-1])
+    extremum(lanes, heads[1:], out=lanes)
+    _from_lanes(lanes, out)
+
+
+def _until_of_block(left: Floats, right: Floats, beyond: Floats, out: Floats) -> None:
     lows, highs = _to_lanes(left, np.inf), _to_lanes(right, -np.inf)
     scratch = np.empty(lows.shape[1:])
     for j in range(len(lows) - 2, -1, -1):
         np.minimum(lows[j], highs[j + 1], out=scratch)
         np.maximum(highs[j], scratch, out=highs[j])
         np.minimum(lows[j], lows[j + 1], out=lows[j])
-    heads = np.empty(scratch.shape)
-    suffix_until(lows[0], highs[0], heads)
-    np.minimum(lows[:, :-1], heads[1:], out=lows[:, :-1])
-    np.maximum(highs[:, :-1], lows[:, :-1], out=highs[:, :-1])
+    heads = np.concatenate([highs[0], beyond])
+    _until_by_doubling(lows[0], highs[0], beyond, heads[:-1])
+    np.minimum(lows, heads[1:], out=lows)
+    np.maximum(highs, lows, out=highs)
     _from_lanes(highs, out)
 
 
-def _until_by_doubling(left: Floats, right: Floats, out: Floats) -> None:
+def _until_by_doubling(left: Floats, right: Floats, beyond: Floats, out: Floats) -> None:
+    """Scan with every call twice as far; `beyond`: the value after the last sample."""
     lows = left.copy()
     out[...] = right
     span = 1
@@ -82,6 +102,7 @@ def _until_by_doubling(left: Floats, right: Floats, out: Floats) -> None:
         out[:-span] = np.maximum(out[:-span], reached)
         lows[:-span] = np.minimum(lows[:-span], lows[span:])
         span *= 2
+    np.maximum(out, np.minimum(lows, beyond), out=out)
 
 
 def _until_by_rows(left: Floats, right: Floats, out: Floats) -> None:
@@ -95,7 +116,7 @@ def _until_by_rows(left: Floats, right: Floats, out: Floats) -> None:
 def _to_lanes(values: Floats, padding: float) -> Floats:
     """Copy to (n_steps, n_lanes, n_traces): lane r holds samples r * n_steps and on; the last is padded."""
     n, k = values.shape
-    steps = min(n, max(2, isqrt(n * k) // 2))
+    steps = min(n, _STEPS)
     n_full = n // steps
     rest = n - n_full * steps
     lanes = np.empty((steps, n_full + (rest > 0), k))

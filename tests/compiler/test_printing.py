@@ -1,6 +1,7 @@
 """Nodes read as the user would write them, and never longer than a line."""
 
 import pytest
+
 from stlspec.compiler.ir import Builder
 from stlspec.compiler.printing import LONGEST, expression_text, number_text
 

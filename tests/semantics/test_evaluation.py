@@ -7,9 +7,11 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
+
 from stlspec.compiler.bundle import BundleData, Requirement, Signal, TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.errors import DataError, UsageError
+from stlspec.semantics import robustness
 from stlspec.semantics.evaluation import BatchResult, Evaluation, RequirementResult, Verdict, evaluate
 
 INF = float("inf")
@@ -220,7 +222,9 @@ def test_twice_the_same_call_gives_the_same_bits_also_from_many_threads():
         assert len(set(pool.map(bits, range(16)))) == 1
 
 
-def test_a_batch_equals_its_traces_bit_for_bit():
+@pytest.mark.parametrize("at_a_time", [100, 2**18])
+def test_a_batch_equals_its_traces_bit_for_bit(at_a_time, monkeypatch):
+    monkeypatch.setattr(robustness, "_BATCH", at_a_time)
     rng = np.random.default_rng(1)
     x, y = rng.standard_normal((7, 50)), rng.standard_normal((7, 50))
     batch = evaluate(GRID, {"x": x, "y": y})

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.errors import DataError
@@ -66,6 +67,7 @@ def test_operators_have_their_usual_values(tree, expected):
 def test_infinite_samples_are_values():
     assert values(("add", "x", 1), x=(INF, -INF, 0)) == [INF, -INF, 1]
     assert values(("min", "x", 2), x=(INF, -INF, 0)) == [2, -INF, 0]
+    assert values(("pow", "x", 0.5), x=(INF, -INF, 4)) == [INF, INF, 2]
 
 
 def test_now_and_rate_are_those_of_every_trace_of_a_batch():
@@ -107,5 +109,8 @@ def test_in_a_batch_the_trace_is_named():
         evaluate_nodes(nodes, [root], trace)
 
 
-def test_the_sign_of_a_zero_minimum_does_not_depend_on_the_processor():
-    assert values(("div", 1, ("min", ("neg", "x"), "x")), x=(0.0, 0.0, 0.0)) == [INF, INF, INF]
+@pytest.mark.parametrize("op", ["min", "max"])
+@pytest.mark.parametrize("operands", [("x", ("neg", "x")), (("neg", "x"), "x"), (("neg", "x"), ("neg", "x"))])
+def test_the_sign_of_a_zero_minimum_does_not_depend_on_order_or_processor(op, operands):
+    zeros = (0.0, 0.0, 0.0)
+    assert values(("div", 1, (op, *operands)), x=zeros) == [INF, INF, INF]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from stlspec.errors import DataError
 from stlspec.semantics.layout import arrange
 

@@ -1,6 +1,7 @@
 """How far ahead a formula looks before an operator without end."""
 
 import pytest
+
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.semantics.reach import bounded_reach

@@ -1,6 +1,7 @@
 """A reason names the operands' values and what is needed of them."""
 
 import pytest
+
 from stlspec.compiler.ir import Builder
 from stlspec.semantics.reasons import reason_text
 from stlspec.traces import make_trace

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from stlspec.compiler.ir import Builder
 from stlspec.semantics.robustness import TIE, evaluate_nodes, needed_nodes, shown
 from stlspec.traces import make_trace

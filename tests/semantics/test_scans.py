@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+
 from stlspec.semantics import scans
 
 INF = np.inf
-SHAPES = [(1, 1), (2, 1), (7, 3), (4096, 1), (4097, 1), (5000, 1), (30_011, 1), (700, 37), (9, 600), (600, 520)]
+SHAPES = [(1, 1), (2, 1), (7, 3), (4096, 1), (4097, 1), (5000, 1), (150_001, 1), (700, 37), (9, 600), (600, 150)]
 
 
 def samples(shape, seed):
@@ -41,9 +42,11 @@ def test_suffix_until_obeys_its_recurrence(shape, backwards):
     assert np.array_equal(out[::step], until_backwards(left[::step], right[::step]))
 
 
-def test_lanes_within_lanes_give_the_same(monkeypatch):
+def test_blocks_and_lanes_leave_no_seam(monkeypatch):
     monkeypatch.setattr(scans, "_SMALL", 4)
     for n in range(1, 200):
+        monkeypatch.setattr(scans, "_BLOCK", 2 * (1 + n % 60))
+        monkeypatch.setattr(scans, "_STEPS", 1 + n % 7)
         left, right, out = samples((n, 2), n), samples((n, 2), -n % 997), np.empty((n, 2))
         scans.suffix_until(left, right, out)
         assert np.array_equal(out, until_backwards(left, right))

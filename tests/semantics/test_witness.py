@@ -4,6 +4,7 @@ import random
 
 import numpy as np
 import pytest
+
 from stlspec.compiler.ir import Builder
 from stlspec.semantics.witness import decide
 from stlspec.traces import make_trace
@@ -14,6 +15,7 @@ from tests.strategies import DECLARED, STEP, random_case, random_signals
 def by_brute_force(case, at):
     """Witness from all deciding (predicate, sample) pairs, found by walking the definition."""
     oracle = Oracle(case.nodes, case.signals, case.times, case.ticks_per_unit)
+    oracle.rho(case.root)
     found, ran_out = oracle.deciding(case.root, at)
     if not found:
         return -1, -1, False, ran_out
@@ -118,6 +120,13 @@ def test_a_constant_is_neither_vacuous_nor_has_it_a_witness():
 
 def test_next_off_the_end_is_vacuous():
     assert decided(lambda b: b.add("next", [above(b, "x", 1)]), x=[1]) == (-1, -1, True)
+
+
+def test_of_several_predicates_at_one_sample_the_first_in_the_dag_is_the_witness():
+    def build(b):
+        return b.add("and", [above(b, "y", 1), above(b, "x", 1)])
+
+    assert decided(build, x=[0], y=[0]) == (0, 2, False)
 
 
 def test_a_long_trace_is_explained_in_linear_work():
