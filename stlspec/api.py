@@ -35,7 +35,9 @@ class Bundle(BundleData):
         """The hash of the text that the spec was compiled from."""
         return bundle_file.source_sha256(self)
 
-    def evaluate(self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0) -> Evaluation:
+    def evaluate(
+        self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0
+    ) -> "Evaluation[Any]":
         """Evaluate every requirement on one trace, a batch, or a ragged list of traces.
 
         Paper: Definition 5, quantitative semantics; the verdict is the Boolean semantics.

@@ -13,11 +13,11 @@ from stlspec.api import Bundle, publish
 from stlspec.compiler.checks import check, names_in
 from stlspec.compiler.inference import FUNCTIONS, NOW
 from stlspec.compiler.lower import lower
-from stlspec.demos import Demonstration, bind
+from stlspec.demos import Demonstration, OnNan, bind
 from stlspec.errors import SpecError, UsageError, diagnostic
 from stlspec.lang.nodes import Name, RequirementStatement, SignalStatement, Statement
 from stlspec.lang.parse import Syntax, parse, parse_formula
-from stlspec.semantics.evaluation import RequirementResult, evaluate
+from stlspec.semantics.evaluation import End, RequirementResult, evaluate
 from stlspec.source import SourceText, Span
 
 _NAME = "formula"
@@ -63,9 +63,9 @@ def evaluate_on(
     time: str = "step",
     params: Mapping[str, str] | None = None,
     *,
-    end: str = "clip",
+    end: End = "clip",
     at: int = 0,
-    on_nan: str = "refuse",
+    on_nan: OnNan = "refuse",
 ) -> tuple[FormulaResult, ...]:
     """Evaluate a formula on each demonstration.
 
@@ -76,9 +76,9 @@ def evaluate_on(
         columns = demonstration.recording.columns
         booleans = frozenset(n for n, values in columns.items() if np.asarray(values).dtype == np.bool_)
         bundle = compile_formula(text, booleans, time, params)
-        bound = bind(bundle, demonstration, None, on_nan)  # type: ignore[arg-type]
-        found = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)  # type: ignore[arg-type]
-        results.append(FormulaResult(bound.name, found[_NAME]))  # type: ignore[arg-type]
+        bound = bind(bundle, demonstration, None, on_nan)
+        found = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
+        results.append(FormulaResult(bound.name, found[_NAME]))
     return tuple(results)
 
 

@@ -27,6 +27,13 @@ class Gate(StrEnum):
     ALL = "all"
 
 
+class End(StrEnum):
+    """What the end of a trace means."""
+
+    CLIP = "clip"
+    STRICT = "strict"
+
+
 class OnNan(StrEnum):
     """What to do with a sample that is not a number."""
 
@@ -37,7 +44,7 @@ class OnNan(StrEnum):
 
 Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")]
 Data = Annotated[list[str], typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ")]
-End = Annotated[str, typer.Option("--end", metavar="clip|strict", help="what the end of a trace means")]
+EndOption = Annotated[End, typer.Option("--end", help="what the end of a trace means")]
 OnNanOption = Annotated[OnNan, typer.Option("--on-nan", help="what to do with a NaN")]
 EnvOption = Annotated[str | None, typer.Option("--env", metavar="ID", help="the environment, by gymnasium id")]
 EnvArgs = Annotated[
@@ -88,7 +95,7 @@ def score(
     at: Annotated[
         int | None, typer.Option("--at", metavar="K", help="values at sample K; negative counts from the end")
     ] = None,
-    end: End = "clip",
+    end: EndOption = End.CLIP,
     on_nan: OnNanOption = OnNan.REFUSE,
     env: EnvOption = None,
     env_arg: EnvArgs = None,
@@ -106,7 +113,7 @@ def score(
         env, env_arg, map_file
     )
     ranking = scores.score(
-        bundle, load_demonstrations(demonstrations), environment, end=end, at=at, on_nan=on_nan.value
+        bundle, load_demonstrations(demonstrations), environment, end=end.value, at=at, on_nan=on_nan.value
     )
     if output is ScoreFormat.JSON:
         print_json(ranking.to_json())
@@ -163,7 +170,7 @@ def evaluate_formula(
     params: Params = None,
     time: Annotated[str, typer.Option("--time", metavar="TIME", help="as in a spec: step, s, '100 ms'")] = "step",
     at: Annotated[int, typer.Option("--at", metavar="K", help="the sample whose value is shown")] = 0,
-    end: End = "clip",
+    end: EndOption = End.CLIP,
     on_nan: OnNanOption = OnNan.REFUSE,
     output: FormatOption = Format.TEXT,
 ) -> None:
@@ -173,7 +180,7 @@ def evaluate_formula(
     from stlspec.formulas import evaluate_on
 
     results = evaluate_on(
-        formula, load_demonstrations(files), time, read_params(params), end=end, at=at, on_nan=on_nan.value
+        formula, load_demonstrations(files), time, read_params(params), end=end.value, at=at, on_nan=on_nan.value
     )
     if output is Format.JSON:
         print_json(report.formula_document(formula, results))
