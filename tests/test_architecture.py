@@ -122,7 +122,7 @@ def test_every_module_has_a_docstring_and_a_test_of_the_same_name(path: Path) ->
     if path.name == "__init__.py" or is_catalogue(tree):
         return  # packages are tested through their modules, tables by tests/errors/test_catalogue.py
     relative = path.relative_to(PACKAGE)
-    expected = ROOT / "tests" / relative.parent / f"test_{relative.name.strip('_')}"
+    expected = ROOT / "tests" / relative.parent / f"test_{relative.stem.strip('_')}.py"
     assert expected.exists(), f"{relative} has no test file {expected.relative_to(ROOT)}"
 
 
