@@ -43,8 +43,8 @@ def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tupl
     """
     problems = list(syntax.diagnostics)
     declared = declare(syntax, problems)
-    silent = (syntax.names | syntax.requirement_names | syntax.lost) - declared.places.keys()
-    inference = Inference(syntax.source, declared, silent, problems)
+    silent = (syntax.names | syntax.requirement_names | syntax.lost.names) - declared.places.keys()
+    inference = Inference(syntax, declared, silent, problems)
     units = _units(inference)
     params = _params(inference, bindings or {})
     kinds = _types(inference, units)
@@ -256,7 +256,12 @@ def _graph(syntax: Syntax, declared: Declared, problems: list[Diagnostic]) -> No
     if circle is not None:
         problems.append(_circle(syntax.source, declared, circle))
         return
-    complete = not syntax.lost and syntax.requirement_names <= requirements.keys() and len(problems) == before
+    complete = (
+        not syntax.lost.names
+        and not syntax.lost.nameless
+        and syntax.requirement_names <= requirements.keys()
+        and len(problems) == before
+    )
     if complete:
         _weights(syntax.source, declared, edges, problems)
 
@@ -269,9 +274,11 @@ def _edge(
         return diagnostic("G503", source=source, span=on.span, name=name)
     other = declared.requirements.get(on.text)
     if other is None:
-        if on.text in syntax.requirement_names or on.text in syntax.lost:
+        if on.text in syntax.requirement_names or on.text in syntax.lost.names:
             return None
         close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
+        if close is None and syntax.lost.nameless:
+            return None
         what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
         way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"
         return diagnostic("G502", source=source, span=on.span, name=name, on=on.text, help=way)

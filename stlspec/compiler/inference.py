@@ -32,9 +32,10 @@ from stlspec.lang.nodes import (
     operators,
     post_order,
 )
+from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
 from stlspec.lang.units import SPELLINGS, dimension
-from stlspec.source import SourceText, Span
+from stlspec.source import Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
 ARITHMETIC = frozenset({"add", "sub", "mul", "div", "pow"})
@@ -61,10 +62,9 @@ SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
 class Inference:
     """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
 
-    def __init__(
-        self, source: SourceText, declared: Declared, silent: frozenset[str], problems: list[Diagnostic]
-    ) -> None:
-        self.source = source
+    def __init__(self, syntax: Syntax, declared: Declared, silent: frozenset[str], problems: list[Diagnostic]) -> None:
+        self.source = syntax.source
+        self.nameless = syntax.lost.nameless
         self.declared = declared
         self.silent = silent
         self.problems = problems
@@ -146,16 +146,11 @@ class Inference:
             time = self.declared.time
             counted = time.kind == "step" or not self.declared.time_known
             return Typing("real", None if counted else {time.unit: 1})
-        return self._report("N101", node.span, name=name, help=self._meant(name))
-
-    def _meant(self, name: str) -> str:
         few = len(self.problems) < MANY_PROBLEMS
         close = closest(name, [*self.scope, "now", "true", "false", "inf"]) if few else None
-        if close:
-            return f"did you mean `{close}`?"
-        if name in OPERATOR_WORDS:
-            return f"`{name}` is an operator: it needs an operand"
-        return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`"
+        if close is None and self.nameless:
+            return BROKEN
+        return self._report("N101", node.span, name=name, help=_way_out(name, close))
 
     def _index(self, node: Index) -> Typing:
         inner = self._name(node.name)
@@ -180,7 +175,8 @@ class Inference:
             return self._report("T203", node.span, name=name, wanted=f"{wanted} {plural}", given=given, usage=usage)
         if not self._all_real(node.arguments, f"{name}(...)"):
             return BROKEN
-        unit = self.quantities.of_call(name, list(zip(node.arguments, below, strict=True)), self.declared.time)
+        time = self.declared.time if self.declared.time_known else None
+        unit = self.quantities.of_call(name, list(zip(node.arguments, below, strict=True)), time)
         return self._folded(name, below, unit, node.span) if unit is not BROKEN else BROKEN
 
     def _unknown_function(self, node: Call) -> Typing:
@@ -348,3 +344,12 @@ def _short(text: str) -> str:
     """Cut a piece of source to what fits into a message."""
     flat = " ".join(text.split())
     return flat if len(flat) <= 30 else flat[:29] + "…"
+
+
+def _way_out(name: str, close: str | None) -> str:
+    """Say what to do about an unknown name."""
+    if close is not None:
+        return f"did you mean `{close}`?"
+    if name in OPERATOR_WORDS:
+        return f"`{name}` is an operator: it needs an operand"
+    return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`"

@@ -86,7 +86,7 @@ def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase | None:
     found = [s for s in syntax.statements if isinstance(s, TimeStatement)]
     problems += [_misplaced(syntax, s, "time", "is given twice", "keep one of the two") for s in found[1:]]
     if not found:
-        return None if syntax.time_lost else TimeBase("step", STEP, 1)
+        return None if syntax.lost.time else TimeBase("step", STEP, 1)
     return _time_base(syntax, found[0], problems)
 
 

@@ -36,7 +36,15 @@ from stlspec.lang.nodes import (
     children,
     post_order,
 )
-from stlspec.lang.statements import DECLARING, STATEMENT_WORDS, cut, first_on_line, is_word, lost_names
+from stlspec.lang.statements import (
+    STATEMENT_WORDS,
+    Lost,
+    begins_like_statement,
+    cut,
+    first_on_line,
+    is_word,
+    lost,
+)
 from stlspec.lang.tree import TreeBuilder, span_of
 from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
@@ -59,8 +67,8 @@ _END = "$END"
 class Syntax:
     """What a text says: its good statements, and one diagnostic for each broken one.
 
-    names: what the text declares. lost: more names that broken statements may have been meant to declare; uses of
-    either are not reported a second time. time_lost: a broken statement may have been the `time` statement.
+    names: what the text declares. lost: what broken statements may have been meant to declare; uses of it are
+    not reported a second time.
     """
 
     source: SourceText
@@ -69,8 +77,7 @@ class Syntax:
     comments: tuple[Text, ...]
     names: frozenset[str]
     requirement_names: frozenset[str]
-    lost: frozenset[str] = frozenset()
-    time_lost: bool = False
+    lost: Lost = Lost()
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,12 +114,12 @@ def parse(source: SourceText) -> Syntax:
     for tokens in pieces.statements:
         rest = tokens
         while rest:
-            node, problem, used = _Feed(automaton, source, rest, pieces.names).run("statement")
+            node, problem, used = _parsed(automaton, source, rest, pieces.names)
             if node is not None:
                 statements.append(node)
             if problem is not None:
                 problems.append(problem)
-                broken.append(rest if node is None else _from(rest, problem))
+                broken.append(rest[:used] if node is None else _from(rest[:used], problem))
             rest = rest[used:]
     if not pieces.statements:
         problems.append(diagnostic("S016", source=source, span=Span(0, 0)))
@@ -124,9 +131,24 @@ def parse(source: SourceText) -> Syntax:
         pieces.comments,
         pieces.names,
         pieces.requirement_names,
-        lost_names(broken),
-        any(tokens[0].type not in DECLARING | {"HARD", "SOFT", "SPEC", "USE", "EXPECT"} for tokens in broken),
+        lost(broken),
     )
+
+
+def _parsed(
+    automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str]
+) -> tuple[Any, Diagnostic | None, int]:
+    """Parse the statement that `tokens` begin with; see `_Feed.run`.
+
+    One that is broken ends at the latest where a line looks like a misspelt beginning of the next.
+    """
+    node, problem, used = _Feed(automaton, source, tokens, names).run("statement")
+    if problem is None or used < len(tokens):
+        return node, problem, used
+    for i in range(1, len(tokens)):
+        if begins_like_statement(tokens, i, names):
+            return _Feed(automaton, source, tokens[:i], names).run("statement")
+    return node, problem, used
 
 
 def _from(tokens: Sequence[Token], problem: Diagnostic) -> Sequence[Token]:
@@ -252,13 +274,17 @@ class _Feed:
         row = self.state.parse_conf.states[self.state.state_stack[-1]]
         if i and self.tokens[i - 1].type == "NUMBER" and "UNIT" in row and self._is_unit(i):
             return self._unit(i)
-        if token.type in self.automaton.contextual and not self._is_operator(token, i, row):
+        if token.type in self.automaton.contextual and not self._is_operator(token, i):
             return Token.new_borrow_pos("NAME", str(token), token), 1
         return token, 1
 
-    def _is_operator(self, token: Token, i: int, row: dict[str, Any]) -> bool:
-        """Tell whether a contextual word stands for the word, not for a name."""
-        if token.type not in row:
+    def _is_operator(self, token: Token, i: int) -> bool:
+        """Tell whether a contextual word stands for the word, not for a name.
+
+        A look at the state's row is not enough: behind the `]` of a window it has the clauses of a signal, whose
+        range ends in the same state.
+        """
+        if not self._accepts(token.type):
             return False
         is_prefix = token.type in self.automaton.prefix_aliases
         if not is_prefix and token.type not in self.automaton.infix_aliases:

@@ -13,6 +13,7 @@ from itertools import pairwise
 from lark import Lark, Token
 
 from stlspec.lang.nodes import Text
+from stlspec.lang.spelling import closest
 from stlspec.lang.tree import span_of
 from stlspec.source import SourceText
 
@@ -85,16 +86,46 @@ def _begins_statement(tokens: Sequence[Token], i: int) -> bool:
     return False
 
 
-def lost_names(broken: Sequence[Sequence[Token]]) -> frozenset[str]:
-    """Return the names that broken statements may have been meant to declare.
+def begins_like_statement(tokens: Sequence[Token], i: int, names: frozenset[str]) -> bool:
+    """Tell whether token `i` looks like a misspelt beginning of a statement: `hrad safe`, or `time` and no more.
 
-    What stands after a statement's word, every word of a broken `signal` or `param`, and the first two words of
-    a line that begins with no statement's word (`sginal d`, or `d` where the word was lost).
+    Asked only inside a statement that is broken anyway, so that it does not swallow the next one.
     """
-    found: set[str] = set()
+    token = tokens[i]
+    if not first_on_line(tokens, i) or not is_word(token) or str(token) in names:
+        return False
+    alone = i + 1 == len(tokens) or tokens[i + 1].line != token.line
+    if alone or not is_word(tokens[i + 1]):
+        return alone and token.type == "TIME"
+    return closest(str(token), STATEMENT_WORDS, 0.7) is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """What broken statements may have been meant to say.
+
+    names: that they may declare. nameless: one of them lost its name altogether. time: one of them may be the
+    `time` statement.
+    """
+
+    names: frozenset[str] = frozenset()
+    nameless: bool = False
+    time: bool = False
+
+
+def lost(broken: Sequence[Sequence[Token]]) -> Lost:
+    """Return what the tokens of broken statements may have been meant to declare.
+
+    That is what stands near a statement's word, every word of a broken `signal` or `param`, and the first words
+    of a line that begins with no statement's word (`sginal d`, or `d` where the word was lost).
+    """
+    names: set[str] = set()
     for tokens in broken:
-        first = tokens[0].type
-        words = list(tokens) if first in ("SIGNAL", "PARAM") else list(tokens[:2])
+        words = list(tokens) if tokens[0].type in ("SIGNAL", "PARAM") else list(tokens[:3])
         words += [after for word, after in pairwise(tokens) if word.type in _RESERVED_STARTS]
-        found.update(str(token) for token in words if is_word(token))
-    return frozenset(found)
+        names.update(str(token) for token in words if is_word(token))
+    return Lost(
+        frozenset(names),
+        any(t[0].type in _RESERVED_STARTS and not any(is_word(x) for x in t[1:3]) for t in broken),
+        any(tokens[0].type not in _RESERVED_STARTS | {"SPEC", "USE"} for tokens in broken),
+    )

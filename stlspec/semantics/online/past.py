@@ -1,0 +1,108 @@
+"""Past operators and windows over values that come one at a time, in order of time.
+
+In: times in ticks and values. Out: the operator's value at the newest time. A window is a queue of those values
+that can still become its least one, so every value is added and removed once: constant work on average,
+memory bounded by the window.
+"""
+
+from collections import deque
+
+from stlspec.semantics.online.ranges import INF
+from stlspec.semantics.online.saving import Remembering, Unsound, line_of, number, whole
+
+Row = tuple[int, float]
+
+
+class Sliding(Remembering):
+    """The least of the values from `low` to `high` ticks back, +inf if there is none; high None: of all."""
+
+    __slots__ = ("_high", "_low", "least", "waiting", "window")
+    STATE = {"waiting": line_of(whole, number), "window": line_of(whole, number), "least": number}
+
+    def __init__(self, low: int, high: int | None) -> None:
+        self._low, self._high = low, high
+        self.waiting: deque[Row] = deque()
+        self.window: deque[Row] = deque()
+        self.least = INF
+
+    def step(self, time: int, value: float) -> float:
+        """Take the newest value."""
+        window = self.window
+        if self._low == 0:
+            while window and window[-1][1] >= value:
+                window.pop()
+            window.append((time, value))
+        else:
+            self.waiting.append((time, value))
+            latest = time - self._low
+            while self.waiting and self.waiting[0][0] <= latest:
+                row = self.waiting.popleft()
+                if self._high is None:
+                    self.least = min(self.least, row[1])
+                    continue
+                while window and window[-1][1] >= row[1]:
+                    window.pop()
+                window.append(row)
+        if self._high is None:
+            return self.least
+        earliest = time - self._high
+        while window and window[0][0] < earliest:
+            window.popleft()
+        return window[0][1] if window else INF
+
+    def check(self) -> None:
+        if any(a[1] >= b[1] for a, b in zip(self.window, list(self.window)[1:], strict=False)):
+            raise Unsound("a window is not in order")
+
+
+class Greatest(Sliding):
+    """The greatest of the values in the window, -inf if there is none."""
+
+    __slots__ = ()
+
+    def step(self, time: int, value: float) -> float:
+        """Take the newest value."""
+        return -super().step(time, -value)
+
+
+class Since(Remembering):
+    """left since[low, high] right, by the mirror image of the identity that the offline kernel uses for until.
+
+    running: the value without bounds. waiting: its values less than `low` ticks old. reached: the last of the
+    older ones.
+    """
+
+    __slots__ = ("_held", "_low", "_once", "reached", "running", "waiting")
+    STATE = {"running": number, "reached": number, "waiting": line_of(whole, number)}
+
+    def __init__(self, low: int, high: int | None) -> None:
+        self._low = low
+        self._held = Sliding(0, low - 1) if low > 0 else None
+        self._once = Greatest(low, high) if high is not None else None
+        self.running = self.reached = -INF
+        self.waiting: deque[Row] = deque()
+
+    def step(self, time: int, left: float, right: float) -> float:
+        """Take the newest values."""
+        self.running = max(right, min(left, self.running))
+        self.waiting.append((time, self.running))
+        while self.waiting and self.waiting[0][0] <= time - self._low:
+            self.reached = self.waiting.popleft()[1]
+        value = self.reached
+        if self._held is not None:
+            value = min(value, self._held.step(time, left))
+        if self._once is not None:
+            value = min(value, self._once.step(time, right))
+        return value
+
+    def save(self) -> dict[str, object]:
+        parts = [part.save() if part is not None else None for part in (self._held, self._once)]
+        return super().save() | {"parts": parts}
+
+    def load(self, state: object) -> None:
+        if not isinstance(state, dict) or not isinstance(state.get("parts"), list) or len(state["parts"]) != 2:
+            raise Unsound("parts are missing")
+        super().load({name: value for name, value in state.items() if name != "parts"})
+        for part, saved in zip((self._held, self._once), state["parts"], strict=True):
+            if part is not None:
+                part.load(saved)

@@ -1,0 +1,160 @@
+"""One sample as it comes in: its values and its time, checked as a recorded trace is.
+
+In: what the caller gave. Out: floats, Booleans, ticks, or the same diagnostics that a trace gets at load. Nothing
+here changes the state of a monitor, so that a refused sample leaves no trace.
+"""
+
+import difflib
+import math
+from collections.abc import Mapping
+from typing import Any, NoReturn
+
+import numpy as np
+
+from stlspec.compiler.bundle import Signal, TimeBase
+from stlspec.compiler.printing import number_text
+from stlspec.errors import DataError, diagnostic
+from stlspec.semantics.online.saving import Remembering, number, optional, whole
+
+_LONGEST_TICKS = 2.0**62
+_PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
+
+
+def refuse(code: str, **fields: Any) -> NoReturn:
+    """Raise the error that refuses a sample."""
+    raise DataError([diagnostic(code, **fields)])
+
+
+class Clock(Remembering):
+    """How many samples there were, and when.
+
+    n: number of samples. ticks: time of the newest one since the first. first, stamp: time stamps of the first
+    and the newest one as given; None without time stamps.
+    """
+
+    __slots__ = ("_base", "_gapless", "first", "n", "stamp", "ticks")
+    STATE = {"n": whole, "ticks": whole, "first": optional(number), "stamp": optional(number)}
+
+    def __init__(self, base: TimeBase, gapless: bool) -> None:
+        self._base, self._gapless = base, gapless
+        self.n, self.ticks = 0, -1
+        self.first: float | None = None
+        self.stamp: float | None = None
+
+    def read(self, time: Any) -> int:
+        """Return the ticks of the next sample. Raises: DataError: there cannot be one at `time`."""
+        base = self._base
+        if time is None:
+            if base.kind == "stamps":
+                refuse("D810", unit=base.unit)
+            if self.first is not None:
+                refuse("D891", sample=self.n, problem="has no time stamp, but those before it have")
+            return self.n * (base.period or 1)
+        stamp = self.number(time)
+        if self.n and self.first is None:
+            refuse("D891", sample=self.n, problem="has a time stamp, but those before it have none")
+        ticks = (stamp - (stamp if self.first is None else self.first)) * base.ticks_per_unit
+        if not math.isfinite(stamp) or not abs(ticks) < _LONGEST_TICKS:
+            refuse("D812", time=number_text(stamp), sample=self.n)
+        if base.kind == "stamps":
+            if self.n and round(ticks) <= self.ticks:
+                self._backwards(stamp)
+            return round(ticks)
+        if self.stamp is not None and stamp <= self.stamp:
+            self._backwards(stamp)
+        return self.n if base.kind == "step" else self._on_period(stamp, ticks)
+
+    def number(self, time: Any) -> float:
+        """Return a time stamp as a float; its value may still be infinite or NaN."""
+        return as_real("time", time, self.n)
+
+    def take(self, ticks: int, time: Any) -> None:
+        """Count the sample whose time `read` has accepted."""
+        if time is not None:
+            self.stamp = self.number(time)
+            if self.n == 0:
+                self.first = self.stamp
+        self.ticks = ticks
+        self.n += 1
+
+    def shown(self, ticks: int) -> float:
+        """Return a time in the spec's unit, as offline results show it without time stamps."""
+        return ticks / self._base.ticks_per_unit
+
+    def now(self, time: Any) -> str:
+        """Name the time of the next sample in a message."""
+        if time is None or self._base.kind == "step":
+            return number_text(self.n * (self._base.period or 1) / self._base.ticks_per_unit)
+        return number_text(self.number(time))
+
+    def _backwards(self, stamp: float) -> NoReturn:
+        assert self.stamp is not None
+        refuse("D802", sample=self.n, time=number_text(stamp), previous=number_text(self.stamp))
+
+    def _on_period(self, stamp: float, ticks: float) -> int:
+        base, period = self._base, self._base.period or 1
+        periods = ticks / period
+        count = round(periods)
+        last = self.ticks // period
+        if abs(periods - count) > _PERIOD_TOLERANCE or (self.n and count <= last):
+            length = f"{number_text(period / base.ticks_per_unit)} {base.unit}"
+            refuse("D811", sample=self.n, time=number_text(stamp), period=length, unit=base.unit)
+        if self._gapless and self.n and count > last + 1:
+            refuse("D892", sample=self.n, time=number_text(stamp), periods=count - last)
+        return count * period
+
+
+def as_real(name: str, value: Any, sample: int) -> float:
+    """Return the value of a real signal. Raises: DataError D806: it is no number."""
+    try:
+        if isinstance(value, (str, bytes, complex)):
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        _bad(name, "real", value, sample)
+
+
+def as_boolean(name: str, value: Any, sample: int, time: str) -> bool:
+    """Return the value of a Boolean signal. Raises: DataError D801, D806."""
+    if value is True or value is False:
+        return value
+    if isinstance(value, np.bool_):
+        return bool(value)
+    read = value if isinstance(value, (str, bytes, complex)) else None
+    if read is None:
+        try:
+            read = float(value)
+        except (TypeError, ValueError, OverflowError):
+            read = None
+    if isinstance(read, float) and math.isnan(read):
+        refuse("D801", signal=name, sample=sample, time=time)
+    if read not in (0.0, 1.0):
+        _bad(name, "bool", value, sample)
+    return read == 1.0
+
+
+def _bad(name: str, kind: str, value: Any, sample: int) -> NoReturn:
+    shown = number_text(float(value)) if isinstance(value, (float, np.floating)) else repr(value)
+    shown = shown if len(shown) <= 30 else shown[:29] + "…"
+    hint = "write true, false, 1 or 0" if kind == "bool" else "write a number, inf or -inf"
+    refuse("D806", signal=name, value=shown, sample=sample, type=kind, help=hint)
+
+
+def outside(signal: Signal, value: float, sample: int, time: str) -> NoReturn:
+    """Refuse a value that is NaN or outside its declared range."""
+    if math.isnan(value):
+        refuse("D801", signal=signal.name, sample=sample, time=time)
+    low = number_text(-math.inf if signal.low is None else signal.low)
+    high = number_text(math.inf if signal.high is None else signal.high)
+    refuse("D807", signal=signal.name, value=number_text(value), low=low, high=high, sample=sample, time=time)
+
+
+def missing(names: Mapping[str, Any] | Any, wanted: list[str]) -> NoReturn:
+    """Refuse a sample without a value of one of the wanted signals, or one that is no mapping."""
+    if not isinstance(names, Mapping):
+        refuse("D813", what="a sample", problem=f"is a {type(names).__name__}, not a mapping from names to values")
+    name = next((w for w in wanted if w not in names), wanted[0])
+    close = difflib.get_close_matches(name, [str(n) for n in names], n=1)
+    known = ", ".join(f"'{n}'" for n in list(names)[:5])
+    hint = f"did you mean '{close[0]}'?" if close else f"the sample has {known or 'no signals'}"
+    refuse("D804", signal=name, help=hint)

@@ -1,0 +1,1 @@
+"""Tools around the compiler, each a client of the public API."""
