@@ -24,7 +24,9 @@ def test_every_word_and_sign_of_the_grammar_is_named() -> None:
     words = re.findall(r'^[A-Z_]+(?:\.\d)?: "(.+)"$', grammar_text(), re.M)
     assert len(words) > 70
     plain = TEXT.replace("\\|", "|")
-    missing = [w for w in words if w not in (":=", "{", "}", ")", "]") and not re.search(rf"[`\s(\[]{re.escape(w)}", plain)]
+    missing = [
+        w for w in words if w not in (":=", "{", "}", ")", "]") and not re.search(rf"[`\s(\[]{re.escape(w)}", plain)
+    ]
     assert missing == []
 
 
