@@ -14,7 +14,9 @@ from stlspec.compiler import bundle_file, files
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.compiling import compile_source
 from stlspec.compiler.graph import to_networkx
+from stlspec.semantics.algebra import MIN_MAX, Algebra
 from stlspec.semantics.evaluation import Evaluation, evaluate
+from stlspec.semantics.gradients import gradient
 from stlspec.source import SourceText
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ class Bundle(BundleData):
         return bundle_file.source_sha256(self)
 
     def evaluate(
-        self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0
+        self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0, algebra: Algebra = MIN_MAX
     ) -> "Evaluation[Any]":
         """Evaluate every requirement on one trace, a batch, or a ragged list of traces.
 
@@ -46,10 +48,28 @@ class Bundle(BundleData):
                  time: stamps of the same shape, in the spec's unit; None where samples are counted or periodic.
                  end: "clip" (a trace is a complete episode) or "strict" (it must reach the horizon).
                  at: the sample whose value is wanted; negative counts from the end.
+                 algebra: of `robustness` and `signal`; verdicts and witnesses are those of min/max in any.
         Returns: for each requirement robustness, verdict, witness, and its value at every sample.
-        Raises:  DataError: a signal is missing, NaN, of another length, ... UsageError: `end` or `at` is wrong.
+        Raises:  DataError: a signal is missing, NaN, of another length, ...
+                 UsageError: `end`, `at` or `algebra` is wrong.
         """
-        return evaluate(self, signals, time, end=end, at=at)
+        return evaluate(self, signals, time, end=end, at=at, algebra=algebra)
+
+    def gradient(
+        self,
+        signals: Mapping[str, Any],
+        time: Any = None,
+        requirement: str | None = None,
+        algebra: Algebra = MIN_MAX,
+    ) -> dict[str, Any]:
+        """Differentiate the robustness of a requirement at sample 0 by every sample of every real signal.
+
+        Args:    signals, time: as `evaluate`. requirement: its name; None: the only one there is.
+                 algebra: min/max gives a subgradient at the witness, `log_sum_exp(T)` a smooth gradient.
+        Returns: arrays by name of the signal, of the shape of its samples.
+        Raises:  DataError: as `evaluate`. UsageError: no such requirement, or an algebra without slopes.
+        """
+        return gradient(self, signals, time, requirement, algebra)
 
     def to_networkx(self) -> "nx.DiGraph":
         """Return the DAG of requirements, edges from prerequisite to dependant, weights on the nodes."""

@@ -27,7 +27,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import dimension
+from stlspec.lang.units import Dimension, dimension
 from stlspec.source import SourceText, Span
 
 _TYPES = ("real", "bool")
@@ -59,12 +59,11 @@ def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tupl
     return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
 
 
-def _units(inference: Inference) -> dict[str, Mapping[str, int]]:
-    """Return the unit of each signal; what they are made of may stand behind numbers from now on."""
-    units: dict[str, Mapping[str, int]] = {}
-    for name, statement in inference.declared.signals.items():
-        units[name] = _unit_of(inference, statement) or {}
-        inference.quantities.known |= units[name].keys()
+def _units(inference: Inference) -> dict[str, Dimension | None]:
+    """Return the unit of each signal, None (any) for a broken one; their words may stand behind numbers now."""
+    units = {name: _unit_of(inference, statement) for name, statement in inference.declared.signals.items()}
+    for unit in units.values():
+        inference.quantities.known |= set(unit or ())
     return units
 
 
@@ -84,7 +83,7 @@ def _params(inference: Inference, bindings: Mapping[str, Binding]) -> dict[str, 
     return params
 
 
-def _types(inference: Inference, units: Mapping[str, Mapping[str, int]]) -> dict[str, str]:
+def _types(inference: Inference, units: Mapping[str, Dimension | None]) -> dict[str, str]:
     """Put signals into scope; return the type of each."""
     kinds = {name: _type_of(inference, statement) for name, statement in inference.declared.signals.items()}
     for name, kind in kinds.items():
@@ -93,7 +92,7 @@ def _types(inference: Inference, units: Mapping[str, Mapping[str, int]]) -> dict
 
 
 def _signals(
-    inference: Inference, kinds: Mapping[str, str], units: Mapping[str, Mapping[str, int]]
+    inference: Inference, kinds: Mapping[str, str], units: Mapping[str, Dimension | None]
 ) -> dict[str, Signal]:
     """Resolve the ranges of signals, in which params and lets may stand."""
     found = {}
@@ -113,9 +112,9 @@ def _signals(
     return found
 
 
-def _unit_of(inference: Inference, statement: SignalStatement) -> Mapping[str, int] | None:
+def _unit_of(inference: Inference, statement: SignalStatement) -> Dimension | None:
     if statement.unit is None:
-        return None
+        return {}
     unit = dimension(statement.unit.text)
     if unit is None:
         problem = diagnostic(
@@ -143,7 +142,7 @@ def _choice(source: SourceText, name: Name, what: str, allowed: tuple[str, ...])
 
 
 def _range_of(
-    inference: Inference, statement: SignalStatement, kind: str, unit: Mapping[str, int]
+    inference: Inference, statement: SignalStatement, kind: str, unit: Dimension | None
 ) -> tuple[float | None, float | None]:
     assert statement.range is not None
     if kind == "bool":
@@ -274,11 +273,9 @@ def _edge(
         return diagnostic("G503", source=source, span=on.span, name=name)
     other = declared.requirements.get(on.text)
     if other is None:
-        if on.text in syntax.requirement_names or on.text in syntax.lost.names:
+        if on.text in syntax.requirement_names or on.text in syntax.lost.names or syntax.lost.nameless:
             return None
         close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
-        if close is None and syntax.lost.nameless:
-            return None
         what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
         way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"
         return diagnostic("G502", source=source, span=on.span, name=name, on=on.text, help=way)

@@ -5,7 +5,7 @@ each root cause: what is reported is "broken", and whatever holds it stays silen
 one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always (d > 1)` and `d + 2`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from stlspec.compiler.constants import FOLDABLE, fold
@@ -34,7 +34,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import SPELLINGS, dimension
+from stlspec.lang.units import SPELLINGS, Dimension, dimension
 from stlspec.source import Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
@@ -144,12 +144,13 @@ class Inference:
             return BROKEN
         if name in NOW:
             time = self.declared.time
-            counted = time.kind == "step" or not self.declared.time_known
-            return Typing("real", None if counted else {time.unit: 1})
+            return (
+                Typing("real", None if time.kind == "step" else {time.unit: 1}) if self.declared.time_known else BROKEN
+            )
+        if self.nameless:
+            return BROKEN
         few = len(self.problems) < MANY_PROBLEMS
         close = closest(name, [*self.scope, "now", "true", "false", "inf"]) if few else None
-        if close is None and self.nameless:
-            return BROKEN
         return self._report("N101", node.span, name=name, help=_way_out(name, close))
 
     def _index(self, node: Index) -> Typing:
@@ -175,7 +176,9 @@ class Inference:
             return self._report("T203", node.span, name=name, wanted=f"{wanted} {plural}", given=given, usage=usage)
         if not self._all_real(node.arguments, f"{name}(...)"):
             return BROKEN
-        time = self.declared.time if self.declared.time_known else None
+        if name == "rate" and not self.declared.time_known:
+            return BROKEN
+        time = self.declared.time
         unit = self.quantities.of_call(name, list(zip(node.arguments, below, strict=True)), time)
         return self._folded(name, below, unit, node.span) if unit is not BROKEN else BROKEN
 
@@ -318,12 +321,14 @@ class Inference:
         varying = [n for n in post_order(node) if not self.typings[id(n)].constant]
         return self._report("T204", node.span, what=what, name=self.source.slice(varying[0].span))
 
-    def range_of(self, interval: Interval, unit: Mapping[str, int]) -> tuple[float, float] | None:
+    def range_of(self, interval: Interval, unit: Dimension | None) -> tuple[float, float] | None:
         """Return the bounds of a signal's range in the signal's unit; None if reported or not known."""
         values = []
         self._said.clear()
         for bound in (interval.low, interval.high):
             typing = self.constant(bound, "a range")
+            if self.quantities.joined([(bound, Typing("real", unit)), (bound, typing)], "compared") is BROKEN:
+                return None
             value = self.quantities.value_in(typing, unit) if typing.kind == "real" else None
             if value is None:
                 return None

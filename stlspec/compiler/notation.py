@@ -28,7 +28,9 @@ def formula_texts(
              names: the root of each let; a let below a formula is written as its name.
     Returns: for each node index one line of at most `LONGEST` characters, cut off with "…".
     """
-    named = {index: name for name, index in reversed((names or {}).items())}
+    named: dict[int, str] = {}
+    for name, index in (names or {}).items():
+        named.setdefault(index, name)
     texts: dict[int, str] = {}
     ranks: dict[int, int] = {}
     for index in _formulas(nodes, root):
@@ -70,10 +72,10 @@ def _text(
         return f" {word} ".join(operand(c, _COMPARISON) for c in children), _BINARY
     if word == "not":
         return f"not {operand(children[0], _NOT)}", _NOT
-    inner = operand(children[0], _PREFIX)
-    return f"{word} ({inner})" if ranks[children[0]] == _COMPARISON and children[0] not in named else (
-        f"{word} {inner}"
-    ), _PREFIX  # fmt: skip
+    child = children[0]
+    # A comparison binds tighter than the operator before it, but few readers know.
+    least = _ATOM if ranks[child] == _COMPARISON else _PREFIX
+    return f"{word} {operand(child, least)}", _PREFIX
 
 
 def _interval_text(interval: Interval | None, time: TimeBase) -> str:

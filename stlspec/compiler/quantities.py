@@ -108,14 +108,12 @@ class Quantities:
             help="divide by the unit first, as in `x / 1 m`",
         )
 
-    def of_call(self, name: str, arguments: Sequence[Operand], time: TimeBase | None) -> Unit:
-        """Return the unit of a function of `arguments`; time None: not known, so that a rate has any unit."""
+    def of_call(self, name: str, arguments: Sequence[Operand], time: TimeBase) -> Unit:
+        """Return the unit of a function of `arguments`."""
         unit = arguments[0][1].unit
         if name in ("min", "max", "hypot"):
             return self.joined(arguments, "compared" if name != "hypot" else "added")
-        if name == "rate" and time is None:
-            return None
-        if name == "rate" and time is not None and unit is not None and time.kind != "step":
+        if name == "rate" and unit is not None and time.kind != "step":
             return self.of_operators(["div"], [arguments[0], (arguments[0][0], Typing("real", {time.unit: 1}))])
         if name in ("exp", "log", "sin", "cos"):
             angle = unit in ({"rad": 1},) and name in ("sin", "cos")

@@ -63,19 +63,26 @@ def write_table() -> None:
     Path(file.name).replace(_TABLE)
 
 
+def _saved_table() -> Any:
+    """Return the saved table; None if there is none, it is damaged, or another grammar or Lark made it."""
+    try:
+        data = _TABLE.read_bytes()
+        if data[:_KEY_LENGTH] != _key():
+            return None
+        return pickle.loads(data[_KEY_LENGTH:])  # noqa: S301 - made by the build, in the package
+    except (OSError, EOFError, ValueError, pickle.UnpicklingError):
+        return None
+
+
 def table_is_current() -> bool:
     """Tell whether the saved table was made from this grammar by this Lark."""
-    try:
-        with _TABLE.open("rb") as file:
-            return file.read(_KEY_LENGTH) == _key()
-    except OSError:
-        return False
+    return _saved_table() is not None
 
 
 def parser(transformer: object) -> lark.Lark:
     """Return the parser with `transformer`'s methods as its callbacks, from the saved table if it is current."""
-    if not table_is_current():
+    saved = _saved_table()
+    if saved is None:
         return build(transformer)
-    saved: Any = pickle.loads(_TABLE.read_bytes()[_KEY_LENGTH:])  # noqa: S301 - made by the build, in the package
     instance = lark.Lark.__new__(lark.Lark)
     return instance._load(saved, transformer=transformer)

@@ -13,7 +13,7 @@ from lark import Token
 
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.spelling import closest
-from stlspec.lang.statements import STATEMENT_WORDS, is_word
+from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, is_word
 from stlspec.lang.tree import span_of
 from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
@@ -22,12 +22,6 @@ OPERATOR_WORDS = (
     "always eventually historically once until since unless release next prev wnext wprev not "
     "and or xor implies iff globally finally"
 ).split()
-_RESERVED = frozenset(
-    (
-        "signal param let hard soft expect always eventually historically once until since unless "
-        "release next prev wnext wprev not and or xor implies iff true false inf"
-    ).split()
-)
 _TEMPORAL = frozenset(
     (
         "ALWAYS G GLOBALLY ALW ALW_ EVENTUALLY F FINALLY EV EV_ HISTORICALLY H HIST HIST_ ONCE O ONCE_ "
@@ -160,7 +154,7 @@ def _glued_statement(failure: Failure) -> Diagnostic | None:
 def _reserved_name(failure: Failure) -> Diagnostic | None:
     """A reserved word where a name is declared."""
     token = failure.token
-    if token is None or str(token) not in _RESERVED or failure.expected != {"NAME"}:
+    if token is None or str(token) not in RESERVED or failure.expected != {"NAME"}:
         return None
     return failure.error("S017", word=str(token))
 

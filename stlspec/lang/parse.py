@@ -37,6 +37,7 @@ from stlspec.lang.nodes import (
     post_order,
 )
 from stlspec.lang.statements import (
+    NOTHING_LOST,
     STATEMENT_WORDS,
     Lost,
     begins_like_statement,
@@ -44,6 +45,7 @@ from stlspec.lang.statements import (
     first_on_line,
     is_word,
     lost,
+    stands_before_statement,
 )
 from stlspec.lang.tree import TreeBuilder, span_of
 from stlspec.lang.units import is_unit_word
@@ -77,7 +79,7 @@ class Syntax:
     comments: tuple[Text, ...]
     names: frozenset[str]
     requirement_names: frozenset[str]
-    lost: Lost = Lost()
+    lost: Lost = NOTHING_LOST
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +145,16 @@ def _parsed(
     One that is broken ends at the latest where a line looks like a misspelt beginning of the next.
     """
     node, problem, used = _Feed(automaton, source, tokens, names).run("statement")
-    if problem is None or used < len(tokens):
+    if problem is None or problem.span is None or used < len(tokens):
         return node, problem, used
     for i in range(1, len(tokens)):
-        if begins_like_statement(tokens, i, names):
-            return _Feed(automaton, source, tokens[:i], names).run("statement")
+        behind = span_of(tokens[i]).start > problem.span.start
+        if begins_like_statement(tokens, i, names) or (behind and stands_before_statement(tokens, i)):
+            if node is not None and not behind:
+                continue
+            return (
+                (node, problem, i) if node is not None else _Feed(automaton, source, tokens[:i], names).run("statement")
+            )
     return node, problem, used
 
 

@@ -13,14 +13,16 @@ _NEIGHBOURS = 10
 
 
 def closest(word: str, candidates: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """Return the candidate nearest to `word`; one that differs in case only comes first.
+    """Return the candidate nearest to `word`; one that differs in case, or in the order of letters, comes first.
 
     Args:    cutoff: how alike they must be at least, from 0 to 1.
     """
     known = list(dict.fromkeys(candidates))
-    same = [other for other in known if other != word and other.casefold() == word.casefold()]
-    if same:
-        return same[0]
+    folded, letters = word.casefold(), sorted(word)
+    others = [other for other in known if len(other) == len(word) and other != word]
+    for other in others:
+        if other.casefold() == folded or (len(word) > 2 and sorted(other) == letters):
+            return other
     if len(known) > _MANY:
         known = _beginning_like(word, known) + [x[::-1] for x in _beginning_like(word[::-1], [x[::-1] for x in known])]
     found = get_close_matches(word, known, 1, cutoff)

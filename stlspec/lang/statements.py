@@ -21,6 +21,12 @@ STATEMENT_WORDS = ("spec", "use", "time", "signal", "param", "let", "hard", "sof
 DECLARING = frozenset({"SIGNAL", "PARAM", "LET"})
 _RESERVED_STARTS = frozenset({"SIGNAL", "PARAM", "LET", "HARD", "SOFT", "EXPECT"})
 TIME_UNITS = ("ns", "us", "ms", "s", "min", "h")
+RESERVED = frozenset(
+    (
+        "signal param let hard soft expect always eventually historically once until since unless "
+        "release next prev wnext wprev not and or xor implies iff true false inf"
+    ).split()
+)
 _WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
 
 
@@ -94,10 +100,17 @@ def begins_like_statement(tokens: Sequence[Token], i: int, names: frozenset[str]
     token = tokens[i]
     if not first_on_line(tokens, i) or not is_word(token) or str(token) in names:
         return False
-    alone = i + 1 == len(tokens) or tokens[i + 1].line != token.line
-    if alone or not is_word(tokens[i + 1]):
-        return alone and token.type == "TIME"
-    return closest(str(token), STATEMENT_WORDS, 0.7) is not None
+    if i + 1 == len(tokens) or tokens[i + 1].line != token.line:
+        return token.type == "TIME"
+    meant = closest(str(token), STATEMENT_WORDS, 0.7)
+    return meant == "time" if tokens[i + 1].type == "NUMBER" else meant is not None and is_word(tokens[i + 1])
+
+
+def stands_before_statement(tokens: Sequence[Token], i: int) -> bool:
+    """Tell whether token `i` is the first on its line and the second begins a statement: `) signal d`."""
+    if not first_on_line(tokens, i) or i + 1 >= len(tokens) or tokens[i + 1].line != tokens[i].line:
+        return False
+    return _begins_statement(tokens, i + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,19 +126,32 @@ class Lost:
     time: bool = False
 
 
+NOTHING_LOST = Lost()
+
+
 def lost(broken: Sequence[Sequence[Token]]) -> Lost:
     """Return what the tokens of broken statements may have been meant to declare.
 
     That is what stands near a statement's word, every word of a broken `signal` or `param`, and the first words
-    of a line that begins with no statement's word (`sginal d`, or `d` where the word was lost).
+    of lines that begin with no statement's word (`sginal d`, or `d` where the word was lost).
     """
     names: set[str] = set()
     for tokens in broken:
         words = list(tokens) if tokens[0].type in ("SIGNAL", "PARAM") else list(tokens[:3])
-        words += [after for word, after in pairwise(tokens) if word.type in _RESERVED_STARTS]
+        if tokens[0].type not in _RESERVED_STARTS:
+            words += [t for i in range(1, len(tokens)) if first_on_line(tokens, i) for t in tokens[i : i + 2]]
+        for left, right in pairwise(tokens):
+            words += [right] if left.type in _RESERVED_STARTS else [left] if right.type in _RESERVED_STARTS else []
         names.update(str(token) for token in words if is_word(token))
     return Lost(
         frozenset(names),
-        any(t[0].type in _RESERVED_STARTS and not any(is_word(x) for x in t[1:3]) for t in broken),
-        any(tokens[0].type not in _RESERVED_STARTS | {"SPEC", "USE"} for tokens in broken),
+        any(tokens[0].type in _RESERVED_STARTS and not _has_name(tokens) for tokens in broken),
+        any(tokens[0].type not in _RESERVED_STARTS for tokens in broken),
     )
+
+
+def _has_name(tokens: Sequence[Token]) -> bool:
+    """Tell whether a broken declaration still has its name, perhaps behind something that does not belong there."""
+    words = [is_word(token) and str(token) not in RESERVED for token in tokens[1:3]]
+    fits = len(tokens) > 1 and tokens[1].type not in ("COLON", "STRING", "ASSIGN", "LPAR")
+    return words[:1] == [True] or (fits and words[1:] == [True])

@@ -8,6 +8,7 @@ of two running counts, and everything is linear in the number of samples.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Ranges = tuple[Ints, Ints]
 """For every sample the range [begin, end) of samples that are read, (n_samples,) each."""
+
+_ONE_BREAKS = frozenset({"always", "historically"})
+_ONE_MENDS = frozenset({"eventually", "once"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +91,7 @@ def find_chain(found: Values, predicate: int | None, sample: int) -> tuple[Link,
     return tuple(chain)
 
 
-def bearing_samples(found: Values, chain: Sequence[Link]) -> Bools:
+def bearing_samples(found: Values, chain: Sequence[Link], *, fewest: bool = False) -> Bools:
     """Find the samples at which the last link's predicate is as the verdict has it, inside what is read of it.
 
     Where a requirement is violated, these are its violating samples: a window in which all samples matter
@@ -95,19 +99,28 @@ def bearing_samples(found: Values, chain: Sequence[Link]) -> Bools:
 
     Paper: equation (3), s_bad, for any formula.
 
-    Args:    found: the values. chain: from the root on.
+    Args:    found: the values. chain: from the root on. fewest: of windows in which one sample is enough to
+             turn the operator round keep as few samples as hit all of them, the chain's own first.
     Returns: (n_samples,) bool.
     """
     mask = np.zeros(len(found.grid.times), dtype=np.bool_)
     mask[found.at] = True
     holds = found.wanted > 0
-    for link, below in zip(chain, chain[1:], strict=False):
-        position = found.nodes[link.index].children.index(below.index)
-        begin, end = _read(found, link.index, position, TIE)
-        if found.nodes[link.index].op in ("until", "since") and position == 0 and holds != (link.sign > 0):
-            begin, end = _whole_left(found, link.index)
+    for link, below in pairwise(chain):
+        node = found.nodes[link.index]
+        position = node.children.index(below.index)
+        true = holds == (link.sign > 0)
+        lapsed = node.op in ("until", "since") and not true
+        begin, end = (
+            (_whole_left if position == 0 else _windows)(found, link.index)
+            if lapsed
+            else (_read(found, link.index, position, TIE))
+        )
         rows = np.flatnonzero(mask & (begin < end))
-        mask = _union(begin[rows], end[rows], len(mask))
+        if fewest and node.op in (_ONE_BREAKS if true else _ONE_MENDS):
+            mask = _hitting(begin[rows], end[rows], below.sample, len(mask))
+        else:
+            mask = _union(begin[rows], end[rows], len(mask))
         mask &= (found.values[below.index] * below.sign > 0) == holds
     return mask
 
@@ -237,3 +250,15 @@ def _union(begin: Ints, end: Ints, n: int) -> Bools:
     """Return the mask of the union of ranges."""
     depth = np.bincount(begin, minlength=n + 1) - np.bincount(end, minlength=n + 1)
     return np.asarray(np.cumsum(depth)[:n] > 0)
+
+
+def _hitting(begin: Ints, end: Ints, first: int, n: int) -> Bools:
+    """Return as few samples as hit every range, `first` among them: a range not hit yet is hit at its end."""
+    mask = np.zeros(n, dtype=np.bool_)
+    mask[first] = True
+    latest = -1
+    for low, high in sorted(zip(begin.tolist(), end.tolist(), strict=True), key=lambda r: r[1]):
+        if not low <= first < high and not low <= latest:
+            latest = high - 1
+            mask[latest] = True
+    return mask

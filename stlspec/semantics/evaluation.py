@@ -16,13 +16,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.ir import Node
+from stlspec.compiler.passes import optimised
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, UsageError, diagnostic
+from stlspec.semantics.algebra import MIN_MAX, Algebra, checked
+from stlspec.semantics.folds import evaluate_in, is_lattice, lattice_elements
 from stlspec.semantics.layout import arrange
 from stlspec.semantics.memory import keep_freed_memory
 from stlspec.semantics.reach import bounded_reach
 from stlspec.semantics.reasons import CONSTANT, VACUOUS, reason_text
-from stlspec.semantics.robustness import batches, evaluate_at, evaluate_nodes, shown
+from stlspec.semantics.robustness import batches, evaluate_at, evaluate_nodes
 from stlspec.semantics.witness import Decision, decide
 from stlspec.traces import Trace, make_trace
 
@@ -61,6 +64,7 @@ class Origin:
     root: int
     trace: Trace
     at: int
+    algebra: Algebra = MIN_MAX
 
     def decisions(self) -> list[Decision]:
         """Look for what decides the value; a batch in parts of bounded size."""
@@ -71,8 +75,8 @@ class Origin:
         """Return the robustness of a batch at every sample, ties as 0, (n_traces, n_samples)."""
         signal = np.empty((self.trace.n_traces, self.trace.n_samples))
         for first, part in batches(self.trace):
-            (values,) = evaluate_nodes(self.nodes, [self.root], part)
-            signal[first : first + part.n_traces] = shown(values).T
+            (values,) = evaluate_in(self.algebra, self.nodes, [self.root], part)
+            signal[first : first + part.n_traces] = values.T
         return _frozen(signal)
 
 
@@ -85,18 +89,20 @@ def _frozen(values: NDArray[Any]) -> NDArray[Any]:
 class RequirementResult:
     """One requirement on one trace: its robustness and verdict at the reported sample.
 
-    values: the robustness at every sample, ties told apart as `robustness.TIE` says.
+    values: the robustness at every sample in min/max, whatever the algebra, ties told apart as
+    `robustness.TIE` says. smooth: the same in an algebra that is no lattice.
     """
 
     robustness: float
     verdict: Verdict
     origin: Origin = field(repr=False)
     values: Floats = field(repr=False)
+    smooth: Floats | None = field(default=None, repr=False)
 
     @cached_property
     def signal(self) -> Floats:
-        """Robustness at every sample, (n_samples,)."""
-        return _frozen(shown(self.values))
+        """Robustness at every sample in the algebra that was asked for, (n_samples,)."""
+        return self.smooth if self.smooth is not None else _frozen(lattice_elements(self.origin.algebra, self.values))
 
     @cached_property
     def witness(self) -> Witness | None:
@@ -111,7 +117,7 @@ class RequirementResult:
     @cached_property
     def vacuous(self) -> bool:
         """Whether the value comes from an empty window or from beyond an end of the trace."""
-        return bool(np.isinf(self.robustness)) and bool(self._decision.vacuous[0])
+        return bool(np.isinf(self.values[self.origin.at])) and bool(self._decision.vacuous[0])
 
     @property
     def reason(self) -> str:
@@ -196,6 +202,7 @@ def evaluate(
     end: str = "clip",
     at: int = 0,
     file: str | None = None,
+    algebra: Algebra = MIN_MAX,
 ) -> Evaluation[Any]:
     """Evaluate all requirements on one trace or on many.
 
@@ -209,14 +216,17 @@ def evaluate(
         end: "clip" reads a trace as a complete episode; "strict" refuses one shorter than a horizon.
         at: the sample whose value is reported; negative counts from the end.
         file: where the data come from, for messages.
+        algebra: what `robustness` and `signal` are computed in; verdicts, witnesses and `vacuous` are those of
+            min/max in every algebra.
 
     Returns: a `RequirementResult` for each requirement; for many traces a `BatchResult`.
 
     Raises:
         DataError: the signals cannot be used, an expression has no value, or a trace is too short.
-        UsageError: `end` or `at` is not possible.
+        UsageError: `end`, `at` or `algebra` is not possible.
     """
     _check_end(end)
+    checked(algebra)
     keep_freed_memory()
     used = {str(node.value) for node in bundle.nodes if node.op in ("signal", "bool")}
     layout = arrange([s.name for s in bundle.signals], signals, time, file)
@@ -225,45 +235,66 @@ def evaluate(
         for g in layout.groups
     ]
     if traces and traces[0].numbers is None:
-        return evaluate_trace(bundle, traces[0], end, at)
-    return _evaluate_batch(bundle, traces, layout.ragged, end, at)
+        return evaluate_trace(bundle, traces[0], end, at, algebra)
+    return _evaluate_batch(bundle, traces, layout.ragged, end, at, algebra)
 
 
-def evaluate_trace(bundle: BundleData, trace: Trace, end: str = "clip", at: int = 0) -> Evaluation[RequirementResult]:
+def evaluate_trace(
+    bundle: BundleData, trace: Trace, end: str = "clip", at: int = 0, algebra: Algebra = MIN_MAX
+) -> Evaluation[RequirementResult]:
     """Evaluate all requirements on one trace that was made before; else as `evaluate`."""
     _check_end(end)
+    checked(algebra)
     keep_freed_memory()
     sample = _sample(trace, at)
     if end == "strict":
         _check_length(bundle, trace, sample)
     roots = [r.root for r in bundle.requirements]
+    exact = evaluate_nodes(*optimised(bundle.nodes, roots, MIN_MAX.laws, trace.spacing), trace)
+    smooth = [None] * len(roots) if is_lattice(algebra) else evaluate_in(algebra, bundle.nodes, roots, trace)
     results = {}
-    for r, values in zip(bundle.requirements, evaluate_nodes(bundle.nodes, roots, trace), strict=True):
-        value = values[sample]
-        verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
-        origin = Origin(bundle.nodes, r.root, trace, sample)
-        results[r.name] = RequirementResult(float(shown(value)), verdict, origin, values)
+    for r, values, other in zip(bundle.requirements, exact, smooth, strict=True):
+        value = lattice_elements(algebra, values[sample : sample + 1])[0] if other is None else other[sample]
+        verdict = Verdict.SATISFIED if values[sample] > 0 else Verdict.VIOLATED
+        origin = Origin(bundle.nodes, r.root, trace, sample, algebra)
+        results[r.name] = RequirementResult(float(value), verdict, origin, _frozen(values), other)
     return Evaluation(results)
 
 
 def _evaluate_batch(
-    bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: str, at: int
+    bundle: BundleData, traces: Sequence[Trace], ragged: bool, end: str, at: int, algebra: Algebra
 ) -> Evaluation[BatchResult]:
     samples = [_sample(trace, at) for trace in traces]
     if end == "strict":
         for trace, sample in zip(traces, samples, strict=True):
             _check_length(bundle, trace, sample)
     roots = [r.root for r in bundle.requirements]
-    parts = [evaluate_at(bundle.nodes, roots, t, s) for t, s in zip(traces, samples, strict=True)]
-    values = _in_order(traces, np.concatenate(parts, axis=1))
+    pairs = list(zip(traces, samples, strict=True))
+    exact = _gathered(
+        traces, [evaluate_at(*optimised(bundle.nodes, roots, MIN_MAX.laws, t.spacing), t, s) for t, s in pairs]
+    )
+    robustness = (
+        lattice_elements(algebra, exact)
+        if is_lattice(algebra)
+        else _gathered(traces, [_at(algebra, bundle.nodes, roots, t, s) for t, s in pairs])
+    )
     results = {}
-    for requirement, of_root in zip(bundle.requirements, values, strict=True):
-        origins = tuple(
-            Origin(bundle.nodes, requirement.root, trace, sample) for trace, sample in zip(traces, samples, strict=True)
-        )
-        robustness, satisfied = _frozen(shown(of_root)), _frozen(of_root > 0)
-        results[requirement.name] = BatchResult(robustness, satisfied, origins, ragged)
+    for number, requirement in enumerate(bundle.requirements):
+        origins = tuple(Origin(bundle.nodes, requirement.root, t, s, algebra) for t, s in pairs)
+        satisfied = _frozen(exact[number] > 0)
+        results[requirement.name] = BatchResult(_frozen(robustness[number].copy()), satisfied, origins, ragged)
     return Evaluation(results)
+
+
+def _at(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], trace: Trace, sample: int) -> Floats:
+    """Evaluate a batch at one sample in an algebra that is no lattice, (n_roots, n_traces)."""
+    parts = [evaluate_in(algebra, nodes, roots, part) for _, part in batches(trace)]
+    return np.concatenate([[values[sample] for values in part] for part in parts], axis=1)
+
+
+def _gathered(traces: Sequence[Trace], parts: Sequence[Floats]) -> Floats:
+    """Join (n_roots, n_traces) of each group of traces, in the order of the traces."""
+    return _in_order(traces, np.concatenate(parts, axis=1))
 
 
 def _in_order(traces: Sequence[Trace], values: NDArray[Any]) -> NDArray[Any]:

@@ -124,7 +124,7 @@ def shown(values: Floats) -> Floats:
 def _formula_values(node: Node, operands: list[Floats], trace: Trace, grid: Grid, out: Floats) -> Floats:
     op = node.op
     if op in COMPARISONS:
-        _compare(op, operands[0], operands[1], out)
+        compare(op, operands[0], operands[1], out)
     elif op in _TEMPORAL:
         _TEMPORAL[op](*operands, grid, node.interval, out)
     elif op in ("and", "or"):
@@ -147,8 +147,13 @@ def _formula_values(node: Node, operands: list[Floats], trace: Trace, grid: Grid
     return out
 
 
-def _compare(op: str, left: Floats, right: Floats, out: Floats) -> None:
-    """Write the robustness of a predicate: the distance to its bound, negative where it does not hold."""
+def compare(op: str, left: Floats, right: Floats, out: Floats) -> None:
+    """Write the robustness of a predicate: the distance to its bound, negative where it does not hold.
+
+    Paper: robustness of the predicate f(x) >= c.
+
+    Args:    op: a comparison. left, right: its operands. out: where to write; ties as `TIE` or -`TIE`.
+    """
     if op in ("lt", "le"):
         np.subtract(right, left, out=out)
     else:

@@ -48,7 +48,9 @@ class Writer:
 
     def tree(self, depth, least=IFF):
         """A random tree that may stand where `least` is the loosest level allowed, bracketed if it is looser."""
-        level = self.rng.choice([IFF, IMPLIES, OR, XOR, AND, UNTIL, PREFIX, PREFIX, COMPARE, COMPARE, SUM, PRODUCT, NEG, POW])
+        level = self.rng.choice(
+            [IFF, IMPLIES, OR, XOR, AND, UNTIL, PREFIX, PREFIX, COMPARE, COMPARE, SUM, PRODUCT, NEG, POW]
+        )
         if depth <= 0:
             level = ATOM
         text, tokens = self._made(level, depth - 1)
@@ -94,7 +96,9 @@ class Writer:
         return f"[{low} {high}]", ["[", *left, self.rng.choice(",:"), *right, "]"]
 
     def _prefix(self, depth):
-        word = self.rng.choice(["always", "eventually", "historically", "once", "next", "prev", "wnext", "wprev", "not"])
+        word = self.rng.choice(
+            ["always", "eventually", "historically", "once", "next", "prev", "wnext", "wprev", "not"]
+        )
         bounds, inside = self._interval(word, depth)
         text, tokens = self.tree(depth, PREFIX)
         return f"({word}{bounds} {text})", [self._spelled(word), *inside, *tokens]

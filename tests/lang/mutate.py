@@ -1,4 +1,4 @@
-"""Good specs with one to three statements broken, and what the checker says of them.
+"""Good specs with one or two statements broken, and what the checker says of them.
 
 `python -m tests.lang.mutate --cases 3000 --seed 0`, from the root of the repository, prints the counts. A
 statement counts as broken if it cannot be parsed alone; mutants that still parse are left out.
@@ -15,7 +15,7 @@ from stlspec.lang.parse import parse
 from stlspec.source import SourceText
 
 SPECS = [
-    '''spec grid_single_goal "Single-goal grid-world"
+    """spec grid_single_goal "Single-goal grid-world"
 time step
 signal d_obs  "Manhattan distance to the nearest obstacle"
 signal d_goal "Manhattan distance to the goal"
@@ -26,8 +26,8 @@ hard avoid "Never touch an obstacle":
 soft reach "Get to the goal" depends on avoid:
     eventually at_goal
 soft fast "Get there in time" depends on avoid, reach:
-    eventually[0, T_goal] at_goal''',
-    '''spec car "Keep a safe distance"
+    eventually[0, T_goal] at_goal""",
+    """spec car "Keep a safe distance"
 time 100 ms
 signal gap unit "m" in [0, 200] from "obs.gap[0]"
 signal speed unit "m/s" in [0, 60]
@@ -41,17 +41,16 @@ hard stop scale 2 bound linear: always (gap < 10 m -> F[0, 2 s] speed == 0)
 soft smooth "no jerks" depends on keep: G (calm or brake)
 soft progress depends on keep, smooth:
     eventually[0, 1 min] (gap > far
-        and speed > 3 m/s)''',
-    '''time s
+        and speed > 3 m/s)""",
+    """time s
 signal x
 signal y
 let up = x > y until[0, 5 s] (x < 3 or y <= -2)
 let seen = once[1 s, 2 s] (x ** 2 + y ** 2 > min(x, y, 4))
 hard first: always[0 s, 10 s] (up implies next seen)
 hard second depends on first: (not up) since[0, 3 s] seen
-soft third "last" depends on first, second scale 0.5: historically (0 <= x <= 5)''',
-    '''# comments and aliases
-spec alarm
+soft third "last" depends on first, second scale 0.5: historically (0 <= x <= 5)""",
+    """spec alarm  # comments and aliases
 signal pressure unit "bar"   # in the tank
 signal valve: bool
 let high = pressure > 8 bar
@@ -59,7 +58,7 @@ hard vent:
     # a comment within
     G[0, 100] (high => F[0, 3] valve)
 hard never depends on vent: !(high && X high && X X high)
-soft calm depends on vent, never: (valve R high) <-> (valve W high)''',
+soft calm depends on vent, never: (valve R high) <-> (valve W high)""",
 ]
 BEGINS = re.compile(r"(spec|time|signal|param|let|hard|soft)\b")
 TOKEN = re.compile(r'#[^\n]*|"[^"\n]*"|[A-Za-z_][A-Za-z_0-9]*|[0-9.]+|[<>=!*&|:-]+|\S')
@@ -90,7 +89,7 @@ def mutate(rng, text):
         return text[: token.end()] + " " + token[0] + text[token.end() :]
     if kind == "swap" and k + 1 < len(tokens):
         after = tokens[k + 1]
-        return text[: token.start()] + after[0] + text[token.end() : after.start()] + token[0] + text[after.end() :]
+        return f"{text[: token.start()]} {after[0]} {text[token.end() : after.start()]} {token[0]}{text[after.end() :]}"
     if kind == "misspell":
         words = [t for t in tokens if t[0].isalpha() and len(t[0]) > 3]
         if words:
@@ -134,11 +133,11 @@ def run(cases, seed):
     pieces = [statements(spec) for spec in SPECS]
     while cases:
         parts = list(rng.choice(pieces))
-        chosen = set(rng.sample(range(len(parts)), rng.choice([1, 1, 2, 3])))
+        chosen = set(rng.sample(range(len(parts)), rng.choice([1, 1, 2])))
         for i in chosen:
             parts[i] = mutate(rng, parts[i])
         # A statement that was cut away whole is no longer there, and uses of its name are rightly reported.
-        if all(parse(SourceText.of("alone", parts[i])).diagnostics and parts[i].strip() for i in chosen):
+        if all(parts[i].strip() and parse(SourceText.of("alone", parts[i])).diagnostics for i in chosen):
             _count(counts, parts, chosen)
             cases -= 1
     return counts
@@ -154,16 +153,26 @@ def _count(counts, parts, chosen):
         at += part.count("\n") + 1
         if i in chosen:
             counts.broken += 1
-            counts.found += len(errors) >= len(chosen)
+            counts.found += bool(inside) or len(errors) >= len(chosen)
             counts.placed += bool(inside)
         else:
             counts.good += 1
             counts.blamed += bool(inside)
             if inside:
-                counts.examples.append("\n".join([text, *(f"{n}: {d.code} {d.message}" for n, d in zip(lines, errors, strict=True))]))
+                counts.examples.append(
+                    "\n".join([text, *(f"{n}: {d.code} {d.message}" for n, d in zip(lines, errors, strict=True))])
+                )
     counts.diagnostics += len(errors)
     if len(errors) != len(chosen):
-        counts.examples.append("\n".join([f"WANTED {len(chosen)}", text, *(f"{n}: {d.code} {d.message}" for n, d in zip(lines, errors, strict=True))]))
+        counts.examples.append(
+            "\n".join(
+                [
+                    f"WANTED {len(chosen)}",
+                    text,
+                    *(f"{n}: {d.code} {d.message}" for n, d in zip(lines, errors, strict=True)),
+                ]
+            )
+        )
 
 
 def main(arguments=None):

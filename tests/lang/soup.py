@@ -15,8 +15,9 @@ from stlspec.source import SourceText
 TOKENS = (
     "spec use time signal param let hard soft expect always eventually historically once until since unless release "
     "next prev wnext wprev not and or xor implies iff true false inf depends on scale bound unit in from G F H O X Y "
-    "U S W R alw ev_ until_ ! & && | || -> => <-> <=> < <= > >= == != = + - * / ** ( ) [ ] { } , : := \" \"doc\" # // "
-    "x y p q d_obs abs min rate delta now t real bool tanh none 0 1 5 .5 1e400 12. s ms m/s step m ns min furlong § \\ ' ; ^ "
+    'U S W R alw ev_ until_ ! & && | || -> => <-> <=> < <= > >= == != = + - * / ** ( ) [ ] { } , : := " "doc" # // '
+    "x y p q d_obs abs min rate delta now t real bool tanh none 0 1 5 .5 1e400 12. s ms m/s step m "
+    "ns min furlong § \\ ' ; ^ "
     "hrad sginal alwys x[t] x[t+1] [0,5] [5,2] [0 5] (d>1)"
 ).split()
 STARTS = ["signal x\n", "hard a: ", "soft b depends on a: ", "let p = ", "param T = ", "time ", "\n"]
@@ -29,7 +30,9 @@ def soup(rng):
         words = [rng.choice(TOKENS) if rng.random() < 0.85 else rng.choice(STARTS) for _ in range(rng.randint(0, 60))]
         return "".join(word + rng.choice([" ", " ", " ", "", "\n", "\r"]) for word in words)
     if kind < 0.8:
-        return "".join(chr(rng.choice([rng.randint(32, 126), rng.randint(0, 0x2100), 10])) for _ in range(rng.randint(0, 200)))
+        return "".join(
+            chr(rng.choice([rng.randint(32, 126), rng.randint(0, 0x2100), 10])) for _ in range(rng.randint(0, 200))
+        )
     return rng.randbytes(rng.randint(0, 300)).decode("latin-1")
 
 

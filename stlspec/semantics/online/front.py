@@ -19,7 +19,7 @@ from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.samples import as_boolean, as_real, missing, outside, refuse
-from stlspec.semantics.online.saving import Remembering, numbers
+from stlspec.semantics.online.saving import Remembering, Unsound, numbers
 from stlspec.semantics.robustness import TIE
 
 _MAY_BE_NAN = frozenset({"add", "sub", "mul", "div", "pow", "sqrt", "log", "sin", "cos", "delta", "rate"})
@@ -35,17 +35,22 @@ class Memory(Remembering):
         self._count = len(initial)
         self.values = list(initial)
 
+    def check(self) -> None:
+        if len(self.values) != self._count:
+            raise Unsound("it remembers another number of values")
+
 
 class Lines:
     """The body of a function: lines, the values bound to names in it, the objects that remember.
 
-    parts: for each object how to make one; in the lines object i is called as `o<i>`.
+    parts: for each object how to make one. calls: what the lines call as `o<i>`: of which object, and what of it.
     """
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.bound: dict[str, Any] = {"INF": INF, "NINF": -INF, "TIE": TIE, "NTIE": -TIE}
         self.parts: list[Callable[[], Any]] = []
+        self.calls: list[tuple[int, Callable[[Any], Any]]] = []
         self.initial: list[float] = []
         self._names = 0
         self._negated: dict[str, str] = {"INF": "NINF", "NINF": "INF"}
@@ -73,10 +78,19 @@ class Lines:
         self.add(f"{name} = {expression}")
         return name
 
+    def keep(self, make: Callable[[], Any]) -> int:
+        """Add an object that remembers, return its number."""
+        self.parts.append(make)
+        return len(self.parts) - 1
+
+    def call(self, part: int, method: Callable[[Any], Any]) -> str:
+        """Return the name of a method of an object."""
+        self.calls.append((part, method))
+        return f"o{len(self.calls) - 1}"
+
     def part(self, make: Callable[[], Any]) -> str:
         """Add an object that remembers, return the name of its `step`."""
-        self.parts.append(make)
-        return f"o{len(self.parts) - 1}"
+        return self.call(self.keep(make), lambda part: part.step)
 
     def remember(self, initial: float) -> str:
         """Add a number that is remembered, return where it is."""

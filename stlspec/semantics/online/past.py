@@ -29,6 +29,9 @@ class Sliding(Remembering):
         """Take the newest value."""
         window = self.window
         if self._low == 0:
+            if self._high is None:
+                self.least = min(self.least, value)
+                return self.least
             while window and window[-1][1] >= value:
                 window.pop()
             window.append((time, value))

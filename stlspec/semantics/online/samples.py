@@ -6,7 +6,7 @@ here changes the state of a monitor, so that a refused sample leaves no trace.
 
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
-from stlspec.semantics.online.saving import Remembering, number, optional, whole
+from stlspec.semantics.online.saving import Remembering, Unsound, number, numbers, optional, whole
 
 _LONGEST_TICKS = 2.0**62
 _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
@@ -29,17 +29,19 @@ class Clock(Remembering):
     """How many samples there were, and when.
 
     n: number of samples. ticks: time of the newest one since the first. first, stamp: time stamps of the first
-    and the newest one as given; None without time stamps.
+    and the newest one as given; None without time stamps. last: low, high and current value of one requirement
+    after the other, with the reading `start`.
     """
 
-    __slots__ = ("_base", "_gapless", "first", "n", "stamp", "ticks")
-    STATE = {"n": whole, "ticks": whole, "first": optional(number), "stamp": optional(number)}
+    __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "ticks")
+    STATE = {"n": whole, "ticks": whole, "first": optional(number), "stamp": optional(number), "last": numbers}
 
     def __init__(self, base: TimeBase, gapless: bool) -> None:
         self._base, self._gapless = base, gapless
         self.n, self.ticks = 0, -1
         self.first: float | None = None
         self.stamp: float | None = None
+        self.last: Sequence[float] = ()
 
     def read(self, time: Any) -> int:
         """Return the ticks of the next sample. Raises: DataError: there cannot be one at `time`."""
@@ -80,6 +82,19 @@ class Clock(Remembering):
     def shown(self, ticks: int) -> float:
         """Return a time in the spec's unit, as offline results show it without time stamps."""
         return ticks / self._base.ticks_per_unit
+
+    @property
+    def begin(self) -> float:
+        """Time of the first sample in the spec's unit, as offline results show it."""
+        return 0.0 if self.first is None or self._base.kind == "step" else self.first
+
+    def ends(self) -> list[tuple[float, float, float]]:
+        """Return low, high and current value of each requirement."""
+        return list(zip(self.last[0::3], self.last[1::3], self.last[2::3], strict=True))
+
+    def check(self) -> None:
+        if self.n < 0 or (self.ticks < 0) != (self.n == 0) or len(self.last) % 3:
+            raise Unsound("the clock is wrong")
 
     def now(self, time: Any) -> str:
         """Name the time of the next sample in a message."""

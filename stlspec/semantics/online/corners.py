@@ -1,0 +1,259 @@
+"""Enclosures at sample 0 of `always` over a body with several operators that look ahead.
+
+In: at every sample the body for each combination of -inf and inf in place of its k inner operators, and what the
+sample does to each of them. Out: low, high and current value, for constant work a sample on average (it grows
+with 2^k). This is `nested` with tables of 2^k corners in place of pairs: a formula of min and max is fixed by
+its corners, the least of many is taken corner by corner, and a clamp for one unknown mixes corners in pairs.
+Samples pass through phases by age, in which other inner windows have begun or ended; each phase is a queue.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from stlspec.compiler.ir import Interval
+from stlspec.semantics.online.nested import FOREVER, Enclosure
+from stlspec.semantics.online.plan import Plan
+from stlspec.semantics.online.ranges import INF, Range
+from stlspec.semantics.online.saving import Remembering, Unsound, items, number, numbers, optional, row_of, whole
+
+Table = list[float]
+"""Corner m has inf for the unknowns whose bits are set in m, -inf for the others."""
+
+Change = tuple[int, float, float]
+"""An unknown, and the clamp that it goes through."""
+
+
+def clamp(low: float, high: float, x: float) -> float:
+    """Return max(low, min(high, x)), for low <= high."""
+    return low if x < low else high if x > high else x
+
+
+def changed(table: Table, changes: Sequence[Change]) -> Table:
+    """Return the table after unknowns went through clamps."""
+    result = table[:]
+    for unknown, low, high in changes:
+        bit = 1 << unknown
+        for m in range(len(result)):
+            if not m & bit:
+                a, b = result[m], result[m | bit]
+                result[m] = a if low < a else b if low > b else low
+                result[m | bit] = a if high < a else b if high > b else high
+    return result
+
+
+def value_at(table: Table, point: Sequence[float]) -> float:
+    """Return the value of the formula at a point, one number for each unknown."""
+    for x in reversed(point):
+        half = len(table) // 2
+        table = [a if x < a else b if x > b else x for a, b in zip(table[:half], table[half:], strict=True)]
+    return table[0]
+
+
+class Tables(Remembering):
+    """A queue of tables with their least, as `nested.Clamps`; `older` rows hold (time, table, least from there on).
+
+    changes: what happened to each unknown of the older ones since they became older.
+    """
+
+    __slots__ = ("_count", "_forget", "changes", "front", "least", "newer", "older")
+    STATE = {
+        "front": whole,
+        "least": numbers,
+        "changes": lambda value: [row_of(whole, number, number)(x) for x in items(value)],
+        "newer": lambda value: [_entry(x) for x in items(value)],
+        "older": lambda value: [row_of(whole, numbers, numbers)(x) for x in items(value)],
+    }
+
+    def __init__(self, count: int, forget: bool) -> None:
+        self._count, self._forget = count, forget
+        self.front = FOREVER
+        self.least: Table = [INF] * 2**count
+        self.changes: list[Change] = [(i, -INF, INF) for i in range(count)]
+        self.newer: list[tuple[int | None, Any]] = []
+        self.older: list[tuple[int, Table, Table]] = []
+
+    def push(self, time: int, table: Table) -> None:
+        """Add the body at a newer sample."""
+        self.least = list(map(min, self.least, table))
+        if self._forget:
+            self.newer.append((time, table))
+            if self.front == FOREVER:
+                self.front = time
+
+    def change(self, changes: Sequence[Change]) -> None:
+        """Let unknowns go through clamps."""
+        self.least = changed(self.least, changes)
+        if self.newer:
+            self.newer.append((None, changes))
+        if self.older:
+            self._compose(self.changes, changes, before=False)
+
+    @staticmethod
+    def _compose(total: list[Change], changes: Sequence[Change], before: bool) -> None:
+        """Add changes to a total: those that came `before` it apply last to the unknown."""
+        for unknown, low, high in changes:
+            _, a, b = total[unknown]
+            outer, inner = ((low, high), (a, b)) if before else ((a, b), (low, high))
+            total[unknown] = (unknown, clamp(*outer, inner[0]), clamp(*outer, inner[1]))
+
+    def pop(self) -> tuple[int, Table]:
+        """Take out the oldest sample: its time, and its body after all that happened."""
+        if not self.older:
+            self._turn()
+        time, table, _ = self.older.pop()
+        self.front = self.older[-1][0] if self.older else self._first_newer()
+        return time, changed(table, self.changes)
+
+    def _first_newer(self) -> int:
+        time = self.newer[0][0] if self.newer else None
+        return FOREVER if time is None else time
+
+    def _turn(self) -> None:
+        """Make the newer samples older ones."""
+        total: list[Change] = [(i, -INF, INF) for i in range(self._count)]
+        least: Table = [INF] * 2**self._count
+        for time, entry in reversed(self.newer):
+            if time is None:
+                self._compose(total, entry, before=True)
+                continue
+            table = changed(entry, total)
+            least = list(map(min, least, table))
+            self.older.append((time, table, least))
+        self.newer = []
+        self.least = [INF] * 2**self._count
+        self.changes = [(i, -INF, INF) for i in range(self._count)]
+
+    def value(self, point: Sequence[float]) -> float:
+        """Return the least body of all samples at a point."""
+        result = value_at(self.least, point)
+        if self.older:
+            moved = [clamp(low, high, x) for (_, low, high), x in zip(self.changes, point, strict=True)]
+            result = min(result, value_at(self.older[-1][2], moved))
+        return result
+
+    def check(self) -> None:
+        size = 2**self._count
+        tables = [self.least, *(t for row in self.older for t in row[1:]), *(e for t, e in self.newer if t is not None)]
+        entries = [self.changes, *(e for t, e in self.newer if t is None)]
+        if any(len(t) != size for t in tables) or [c[0] for c in self.changes] != list(range(self._count)):
+            raise Unsound("a table has a wrong size")
+        if any(not 0 <= c[0] < self._count for e in entries for c in e) or (self.newer and self.newer[0][0] is None):
+            raise Unsound("a change does not fit")
+        order = [x[0] for x in self.older[::-1]] + [t for t, _ in self.newer if t is not None]
+        if any(a >= b for a, b in zip(order, order[1:], strict=False)) or self.front != (order or [FOREVER])[0]:
+            raise Unsound("a queue is not in order")
+
+
+def _entry(value: Any) -> tuple[int | None, Any]:
+    time, entry = row_of(optional(whole), items)(value)
+    return time, ([row_of(whole, number, number)(x) for x in entry] if time is None else numbers(entry))
+
+
+class Phase:
+    """What holds for samples of some ages: from `begin` ticks on, until the next phase.
+
+    changing: (unknown, which of its two clamps a sample applies). points: low, high, current. ending: unknowns
+    whose windows end when the phase begins, with their value from then on.
+    """
+
+    __slots__ = ("begin", "changing", "ending", "forget", "points")
+
+    def __init__(
+        self,
+        begin: int,
+        inners: Sequence[tuple[Interval, Sequence[Enclosure], bool]],
+        last: bool,
+    ) -> None:
+        self.begin = begin
+        self.changing: list[tuple[int, int]] = []
+        self.ending: list[Change] = []
+        columns: list[Enclosure] = []
+        self.forget = not last or all(interval[1] is not None for interval, _, _ in inners)
+        for i, ((low, high), fills, waits) in enumerate(inners):
+            closed = high is not None and begin > high
+            waiting = begin < low
+            columns.append(fills[int(waiting)])
+            if closed and high is not None and begin == high + 1:
+                self.ending.append((i, fills[0][2], fills[0][2]))
+            elif not closed and (not waiting or waits):
+                self.changing.append((i, int(waiting)))
+        self.points = [list(point) for point in zip(*columns, strict=True)]
+
+
+class Corners(Remembering):
+    """always[outer] of a body with several inner operators.
+
+    closed: the least body of the samples at which all of them are known. queues: one for each phase.
+    """
+
+    __slots__ = ("_begin", "_certain", "_close", "_end", "_phases", "_size", "_stride", "_tail", "closed", "queues")
+    STATE = {"closed": number}
+
+    def __init__(
+        self, plan: Plan, outer: Interval, tail: Range, inners: Sequence[tuple[Interval, Sequence[Enclosure], bool]]
+    ) -> None:
+        self._begin, self._end = outer[0], FOREVER if outer[1] is None else outer[1]
+        self._stride, self._certain = plan.stride, plan.certain
+        self._close, self._tail = self._end - plan.stride, tail
+        self._size = 2 ** len(inners)
+        lows = {interval[0] for interval, _, _ in inners}
+        ends = {interval[1] + 1 for interval, _, _ in inners if interval[1] is not None}
+        begins = sorted({0} | lows | ends)
+        self._phases = [Phase(begin, inners, begin == begins[-1]) for begin in begins]
+        if self._phases[-1].begin in ends and self._phases[-1].forget:
+            # All windows have ended: the body is a number.
+            self._phases[-1].points = []
+        self.queues = [Tables(len(inners), phase.forget) for phase in self._phases]
+        self.closed = INF
+
+    def step(self, time: int, *values: float) -> Enclosure:
+        """Take the newest sample.
+
+        Args: values: the corners of the body, then for each unknown the clamp of a running operator and that of
+            one whose window has not begun, as (low, high).
+        """
+        self._move(time)
+        if self._begin <= time <= self._end:
+            self.queues[0].push(time, list(values[: self._size]))
+        for phase, queue in zip(self._phases, self.queues, strict=True):
+            if phase.changing:
+                at = [(i, self._size + 4 * i + 2 * which) for i, which in phase.changing]
+                queue.change([(i, values[j], values[j + 1]) for i, j in at])
+        self._move(time + self._stride)
+        return self._told(time)
+
+    def _told(self, time: int) -> Enclosure:
+        low = high = current = self.closed
+        for phase, queue in zip(self._phases, self.queues, strict=True):
+            if phase.points:
+                low = min(low, queue.value(phase.points[0]))
+                high = min(high, queue.value(phase.points[1]))
+                current = min(current, queue.value(phase.points[2]))
+        if time <= self._close:
+            low = min(low, self._tail[0])
+            high = min(high, self._tail[1]) if self._certain else high
+        return low, high, current
+
+    def _move(self, time: int) -> None:
+        """Let samples come of age, as a sample at `time` sees them."""
+        for i in range(len(self._phases) - 1):
+            phase, queue = self._phases[i + 1], self.queues[i]
+            while queue.front + phase.begin <= time:
+                sample, table = queue.pop()
+                table = changed(table, phase.ending)
+                if phase.points:
+                    self.queues[i + 1].push(sample, table)
+                else:
+                    self.closed = min(self.closed, table[0])
+
+    def save(self) -> dict[str, object]:
+        return super().save() | {"queues": [queue.save() for queue in self.queues]}
+
+    def load(self, state: object) -> None:
+        state = dict(state) if isinstance(state, dict) else {}
+        queues = items(state.pop("queues", None))
+        if len(queues) != len(self.queues):
+            raise Unsound("it has another number of queues")
+        for queue, saved in zip(self.queues, queues, strict=True):
+            queue.load(saved)
+        super().load(state)

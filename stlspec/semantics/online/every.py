@@ -1,0 +1,210 @@
+"""The reading `every`: the exact value at each sample, in order, and enclosures of the others on demand.
+
+In: a compiled spec. Out: a program whose function returns what a sample made known. The operators of `late` are
+joined to a network along the DAG; shared sub-formulas are shared there too. Beside it a tape keeps the settled
+values of the samples that are still open, from which their enclosures are computed when somebody asks.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.horizon import horizons
+from stlspec.compiler.ir import Node
+from stlspec.semantics.evaluation import Verdict
+from stlspec.semantics.online.arrays import enclosures, needed, stretch, three
+from stlspec.semantics.online.front import Front, Lines
+from stlspec.semantics.online.late import (
+    Late,
+    LateBoolean,
+    LateNext,
+    LateNot,
+    LatePast,
+    LatePrev,
+    LateSince,
+    LateUntil,
+    LateWindow,
+    Sink,
+)
+from stlspec.semantics.online.past import Greatest, Since, Sliding
+from stlspec.semantics.online.plan import Ends, Plan, make_plan
+from stlspec.semantics.online.program import Program, compiled, shown
+from stlspec.semantics.online.saving import Remembering, Unsound, items, whole
+from stlspec.semantics.online.tape import Tape, reach_back
+
+Floats = NDArray[np.float64]
+
+
+class Known(NamedTuple):
+    """The exact value of a requirement at a sample; a tie is shown as 0. time: in the spec's unit."""
+
+    sample: int
+    time: float
+    requirement: str
+    robustness: float
+    verdict: Verdict
+
+
+class Network(Remembering):
+    """All that the reading `every` remembers beside settled formulas.
+
+    tape: settled values, and as its first column time stamps as given. counts: for each requirement the number
+    of samples at which it is known.
+    """
+
+    __slots__ = ("_bundle", "_found", "_inputs", "_late", "_others", "_plan", "_reach", "counts", "sinks", "tape")
+    STATE = {"counts": lambda value: [whole(x) for x in items(value)]}
+
+    def __init__(self, bundle: BundleData, plan: Plan) -> None:
+        self._bundle, self._plan = bundle, plan
+        roots = [r.root for r in bundle.requirements]
+        self._inputs, self._others = needed(plan, roots)
+        reach = reach_back(plan, self._others, roots)
+        self._reach = None if deferred(bundle, plan) else reach
+        self.counts = [0] * len(roots)
+        self.tape = Tape(1 + len(self._inputs))
+        self._found: list[Known] = []
+        self._late: dict[int, Late] = {}
+        self.sinks = self._connect()
+
+    @property
+    def inputs(self) -> tuple[int, ...]:
+        """The settled formulas that are kept."""
+        return self._inputs
+
+    def _connect(self) -> dict[int, list[Sink]]:
+        """Join the operators; return what takes the values of each settled formula."""
+        sinks: dict[int, list[Sink]] = {}
+        late = set(deferred(self._bundle, self._plan))
+        bounded = [i for i, r in enumerate(self._bundle.requirements) if r.name not in late]
+        _, others = needed(self._plan, [self._bundle.requirements[i].root for i in bounded])
+        for index in others:
+            node = self._plan.nodes[index]
+            part = self._late[index] = _operator(node)
+            for child, inlet in zip(node.children, part.inlets(), strict=True):
+                sinks.setdefault(child, []).append(inlet)
+        for i in bounded:
+            sinks.setdefault(self._bundle.requirements[i].root, []).append(self._outlet(i))
+        for index, part in self._late.items():
+            part.sinks = sinks.pop(index, [])
+        return sinks
+
+    def _outlet(self, requirement: int) -> Sink:
+        name, counts = self._bundle.requirements[requirement].name, self.counts
+        per_unit = self._plan.base.ticks_per_unit
+        new, found, timed = tuple.__new__, self._found, self._plan.base.kind != "step"
+
+        def take(time: int, value: float, upto: int) -> None:
+            sample = counts[requirement]
+            counts[requirement] = sample + 1
+            stamp = self._stamp(sample) if timed else time / per_unit
+            verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
+            found.append(new(Known, (sample, stamp, name, shown(value), verdict)))
+
+        return take
+
+    def _stamp(self, sample: int) -> float:
+        """Return the time of a sample as it was given."""
+        return self.tape.columns[0][sample - self.tape.base]
+
+    def drain(self) -> list[Known]:
+        """Return what has become known."""
+        found = self._found[:]
+        self._found.clear()
+        return found
+
+    def trim(self) -> None:
+        """Forget what no open sample looks at."""
+        self.tape.drop(min(self.counts), self._reach)
+
+    def open_samples(self, n: int) -> list[tuple[int, Floats]]:
+        """Return for each requirement its first open sample, and columns low, high, current from there on."""
+        times, columns = self.tape.arrays()
+        found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[1:])
+        result = []
+        for requirement, first in zip(self._bundle.requirements, self.counts, strict=True):
+            values = three(found[requirement.root][first - self.tape.base :]) if first < n else np.empty((0, 3))
+            result.append((first, values))
+        return result
+
+    def stamps(self, first: int) -> list[float]:
+        """Return the times of the samples from number `first` on."""
+        if self._plan.base.kind == "step":
+            return [float(i) for i in range(first, self.tape.base + len(self.tape.times))]
+        return self.tape.columns[0][first - self.tape.base :].tolist()
+
+    def save(self) -> dict[str, Any]:
+        late = [part.save() for part in self._late.values()]
+        return super().save() | {"tape": self.tape.save(), "late": late}
+
+    def load(self, state: Any) -> None:
+        state = dict(state) if isinstance(state, dict) else {}
+        self.tape.load(state.pop("tape", None))
+        late = items(state.pop("late", None))
+        counts = state.get("counts")
+        if len(late) != len(self._late) or not isinstance(counts, list) or len(counts) != len(self.counts):
+            raise Unsound("it has another number of parts")
+        # The outlets hold on to this very list.
+        self.counts[:] = [whole(x) for x in counts]
+        for part, saved in zip(self._late.values(), late, strict=True):
+            part.load(saved)
+        end = self.tape.base + len(self.tape.times)
+        if len(self.tape.columns) != 1 + len(self._inputs) or not all(self.tape.base <= c <= end for c in self.counts):
+            raise Unsound("the tape does not fit")
+
+
+def _operator(node: Node) -> Late:
+    """Return the late operator of a node."""
+    op = node.op
+    if op in ("not", "next", "prev"):
+        return {"not": LateNot, "next": LateNext, "prev": LatePrev}[op]()
+    if op in ("and", "or"):
+        return LateBoolean(len(node.children), min if op == "and" else max)
+    assert node.interval is not None
+    low, high = node.interval
+    if op in ("historically", "once"):
+        return LatePast((Sliding if op == "historically" else Greatest)(low, high))
+    if op == "since":
+        return LateSince(Since(low, high))
+    assert high is not None
+    return LateUntil(low, high) if op == "until" else LateWindow(low, high, op == "eventually")
+
+
+def deferred(bundle: BundleData, plan: Plan) -> tuple[str, ...]:
+    """Return the names of the requirements whose values are known at the end only: they look ahead without end.
+
+    Not in the paper: it evaluates complete traces only.
+    """
+    ahead = horizons(plan.nodes, plan.base)
+    return tuple(r.name for r in bundle.requirements if ahead[r.root] is None)
+
+
+def every_program(bundle: BundleData, ends: Ends) -> Program:
+    """Write the program of the reading `every`."""
+    plan, lines = make_plan(bundle, ends), Lines()
+    front = Front(plan, bundle.signals, lines)
+    front.write_samples()
+    model = Network(bundle, plan)
+    part = lines.keep(lambda: Network(bundle, plan))
+    stamp = "0.0" if plan.counted else "clock.shown(T) if time is None else clock.stamp"
+    for slot, name in enumerate([stamp, *(front.value(i) for i in model.inputs)]):
+        lines.add(f"{lines.call(part, _appender(slot))}({name})")
+    lines.add(f"{lines.call(part, lambda network: network.tape.times.append)}(T)")
+    for index, sinks in model.sinks.items():
+        for slot in range(len(sinks)):
+            lines.add(f"{lines.call(part, _inlet(index, slot))}(T, {front.value(index)}, T)")
+    lines.add("if not n & 255:")
+    lines.add(f"    {lines.call(part, lambda network: network.trim)}()")
+    lines.add(f"return {lines.call(part, lambda network: network.drain)}()")
+    return compiled(plan, lines, part)
+
+
+def _appender(slot: int) -> Callable[[Network], Callable[[float], None]]:
+    return lambda network: network.tape.columns[slot].append
+
+
+def _inlet(index: int, slot: int) -> Callable[[Network], Sink]:
+    return lambda network: network.sinks[index][slot]

@@ -1,0 +1,222 @@
+"""The online monitor: samples in, one at a time; what is known of each requirement out.
+
+In: a compiled spec. Out: `Monitor`. Its memory can be copied, saved as bytes and restored, and none of it grows
+with the number of samples unless a formula needs them all. A sample that is refused changes nothing.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import meaning_sha256
+from stlspec.errors import Diagnostic, UsageError, diagnostic
+from stlspec.semantics.evaluation import Verdict
+from stlspec.semantics.online.every import Known, Network, deferred, every_program
+from stlspec.semantics.online.plan import Ends, make_plan
+from stlspec.semantics.online.program import Objects, Program, Standing, shown, start_program
+from stlspec.semantics.online.samples import refuse
+from stlspec.semantics.online.saving import Unsound
+from stlspec.semantics.robustness import shown as shown_values
+
+Reading = Literal["start", "every"]
+Floats = NDArray[np.float64]
+
+_SCHEMA = "stlspec.monitor/1"
+_LARGEST = 2**28
+
+
+@dataclass(frozen=True, slots=True)
+class Final:
+    """What a requirement is worth at sample 0 if the trace ends here: just what an evaluation gives."""
+
+    robustness: float
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Open:
+    """The samples at which a requirement is not known yet, with enclosures; ties are shown as 0.
+
+    samples: int64, (n,), without a gap. times: in the spec's unit. low, high, current: (n,), as in `Standing`.
+    """
+
+    samples: NDArray[np.int64]
+    times: Floats
+    low: Floats
+    high: Floats
+    current: Floats
+
+
+class Monitor:
+    """Follows one trace. Make one with `make_monitor`; use it from one thread at a time."""
+
+    __slots__ = ("_bundle", "_objects", "_program", "_step", "ends", "reading")
+
+    def __init__(self, bundle: BundleData, reading: Reading, ends: Ends, program: Program, objects: Objects) -> None:
+        self._bundle, self._program, self._objects = bundle, program, objects
+        self.reading: Reading = reading
+        self.ends: Ends = ends
+        self._step = program.bind(objects)
+
+    @property
+    def n_samples(self) -> int:
+        """Number of samples so far."""
+        return self._objects.clock.n
+
+    def update(self, sample: Mapping[str, Any], time: float | None = None) -> Any:
+        """Take the next sample.
+
+        Not in the paper: it evaluates complete traces only. The step of Algorithm 2 that looks at a partial
+        trace takes `current`.
+
+        Args:    sample: a value for each signal that a requirement uses; others are ignored.
+                 time: its time stamp in the spec's unit; None where samples are counted or periodic.
+        Returns: with the reading `start` a mapping from requirements to `Standing`: what is known of their
+                 values at sample 0. With `every` a list of `Known`: the values that this sample made known,
+                 for each requirement in order of the samples.
+        Raises:  DataError: the sample cannot be used; the monitor is as it was before.
+        """
+        return self._step(sample, time)
+
+    def pending(self) -> Mapping[str, Open]:
+        """Return, for each requirement, enclosures at the samples at which it is not known yet.
+
+        With the reading `start` that is sample 0, as long as its enclosure is not a single value. Not in the
+        paper: it evaluates complete traces only.
+        """
+        names = [r.name for r in self._bundle.requirements]
+        if self.n_samples == 0:
+            empty = np.empty((0, 3))
+            return {name: _open(0, [], empty) for name in names}
+        if self.reading == "start":
+            clock = self._objects.clock
+            rows = [np.array([row] if row[0] != row[1] else np.empty((0, 3))) for row in clock.ends()]
+            return {name: _open(0, [clock.begin][: len(row)], row) for name, row in zip(names, rows, strict=True)}
+        network = self._network()
+        found = network.open_samples(self.n_samples)
+        return {name: _open(at, network.stamps(at), rows) for name, (at, rows) in zip(names, found, strict=True)}
+
+    def finish(self) -> Any:
+        """Return what is worth what if the trace ends here; the monitor can go on all the same.
+
+        Returns: with the reading `start` a mapping from requirements to `Final`, the robustness and verdict
+                 that `evaluate` gives for the samples so far. With `every` a list of `Known` for all samples
+                 not known yet.
+        Raises:  DataError: there was no sample.
+        """
+        if self.n_samples == 0:
+            refuse("D803", where=": the monitor has seen none")
+        if self.reading == "every":
+            return self._rest()
+        rows = zip(self._bundle.requirements, self._objects.clock.ends(), strict=True)
+        return {r.name: Final(shown(value), _verdict(value)) for r, (_, _, value) in rows}
+
+    def _rest(self) -> list[Known]:
+        network = self._network()
+        found: list[Known] = []
+        for requirement, (first, rows) in zip(
+            self._bundle.requirements, network.open_samples(self.n_samples), strict=True
+        ):
+            values = rows[:, 2].tolist()
+            for i, (time, value) in enumerate(zip(network.stamps(first), values, strict=True)):
+                found.append(Known(first + i, time, requirement.name, shown(value), _verdict(value)))
+        return found
+
+    def _network(self) -> Network:
+        network = self._objects.parts[self._program.network]
+        assert isinstance(network, Network)
+        return network
+
+    def copy(self) -> "Monitor":
+        """Return a monitor that has seen the same samples and goes its own way."""
+        objects = self._program.objects()
+        objects.load(self._objects.save())
+        return Monitor(self._bundle, self.reading, self.ends, self._program, objects)
+
+    def to_bytes(self) -> bytes:
+        """Return the monitor's memory as JSON, to be restored with `from_bytes`."""
+        document = {
+            "schema": _SCHEMA,
+            "meaning_sha256": meaning_sha256(self._bundle),
+            "reading": self.reading,
+            "ends": self.ends,
+            "state": self._objects.save(),
+        }
+        return json.dumps(document, allow_nan=False, separators=(",", ":")).encode()
+
+    @classmethod
+    def from_bytes(cls, bundle: BundleData, data: bytes) -> "Monitor":
+        """Restore a monitor of the same spec; nothing in the bytes is executed.
+
+        Raises: DataError D893: they are damaged, or were saved with another spec or version.
+        """
+        try:
+            document = _document(data)
+            if document.get("meaning_sha256") != meaning_sha256(bundle):
+                raise Unsound("it was saved with another spec")
+            reading, ends = document.get("reading"), document.get("ends")
+            if reading not in ("start", "every") or ends not in ("any", "horizon"):
+                raise Unsound("its reading is unknown")
+            monitor = make_monitor(bundle, reading, ends)
+            monitor._objects.load(document.get("state"))
+            wanted = len(bundle.requirements) if reading == "start" and monitor.n_samples else 0
+            if len(monitor._objects.clock.ends()) != wanted:
+                raise Unsound("it has another number of requirements")
+            monitor._step = monitor._program.bind(monitor._objects)
+        except Unsound as error:
+            refuse("D893", problem=str(error))
+        return monitor
+
+
+def _document(data: bytes) -> dict[str, Any]:
+    if len(data) > _LARGEST:
+        raise Unsound("it is too large")
+    try:
+        document = json.loads(data.decode("utf-8"))
+    except (ValueError, RecursionError):
+        raise Unsound("it is not JSON") from None
+    if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
+        raise Unsound(f"it is no {_SCHEMA} document")
+    return document
+
+
+def _verdict(value: float) -> Verdict:
+    return Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
+
+
+def _open(first: int, times: Sequence[float], rows: Floats) -> Open:
+    values = shown_values(rows)
+    columns = (np.arange(first, first + len(rows)), np.array(times, dtype=np.float64), *values.T)
+    for column in columns:
+        column.flags.writeable = False
+    return Open(*columns)
+
+
+def make_monitor(bundle: BundleData, reading: Reading = "start", ends: Ends = "any") -> Monitor:
+    """Make a monitor that has seen no sample yet.
+
+    Not in the paper: it evaluates complete traces only.
+
+    Args:
+        bundle: the compiled spec.
+        reading: "start" follows the requirements at sample 0, "every" at each sample.
+        ends: "any": the trace may end after any sample, so no sample to come is certain. "horizon": it is
+            promised to reach the horizon without a gap, which can make enclosures narrower.
+
+    Raises: UsageError: the reading or the end is unknown.
+    """
+    for name, given, known in (("reading", reading, ("start", "every")), ("ends", ends, ("any", "horizon"))):
+        if given not in known:
+            raise UsageError([diagnostic("D880", what=f"{name}={given!r}", help=f"use {known[0]} or {known[1]}")])
+    program = start_program(bundle, ends) if reading == "start" else every_program(bundle, ends)
+    return Monitor(bundle, reading, ends, program, program.objects())
+
+
+def late_warnings(bundle: BundleData) -> tuple[Diagnostic, ...]:
+    """Return a warning for each requirement whose values the reading `every` knows at the end only."""
+    return tuple(diagnostic("D894", requirement=name) for name in deferred(bundle, make_plan(bundle)))
