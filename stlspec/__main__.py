@@ -2,12 +2,16 @@
 
 import sys
 
-from stlspec.cli import main
-
 
 def run() -> None:
     """Run the command line and leave with its exit code."""
-    sys.exit(main.run())
+    try:
+        # Here and not above, so that Ctrl-C while modules load ends like any other.
+        from stlspec.cli import main
+
+        sys.exit(main.run())
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

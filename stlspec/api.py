@@ -14,6 +14,7 @@ from stlspec.compiler import bundle_file, files
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.compiling import compile_source
 from stlspec.compiler.graph import to_networkx
+from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.algebra import MIN_MAX, Algebra
 from stlspec.semantics.evaluation import Evaluation, evaluate
 from stlspec.semantics.gradients import gradient
@@ -23,7 +24,10 @@ if TYPE_CHECKING:
     import networkx as nx
 
 
-@dataclass(frozen=True)
+_ENDINGS = (".stl", ".stlspec", ".stlb")
+
+
+@dataclass(frozen=True, repr=False)
 class Bundle(BundleData):
     """A compiled spec: immutable, safe to share between threads, equal where the meaning and the text are."""
 
@@ -83,6 +87,11 @@ class Bundle(BundleData):
         """Write the bundle to a file, whole or not at all. Raises: InputError: it cannot be written."""
         files.write_bytes(path, self.dumps())
 
+    def __repr__(self) -> str:
+        """Show what it is, not all that it holds."""
+        names = ", ".join(r.name for r in self.requirements[:5]) + (", ..." if self.requirements[5:] else "")
+        return f"<Bundle {self.name or 'without a name'}: {names}; meaning {self.meaning_sha256[:12]}>"
+
     def __reduce__(self) -> tuple[Callable[[bytes], "Bundle"], tuple[bytes]]:
         """Pickle as the bundle file, so that worker processes get it checked."""
         return _loads, (self.dumps(),)
@@ -106,8 +115,14 @@ def compile(spec: str | Path, params: Mapping[str, float | str] | None = None) -
     Raises:  SpecError: the text has errors (`.diagnostics`). InputError: the file cannot be used, or a param
              has no value.
     """
-    source = files.read_source(spec) if isinstance(spec, Path) else SourceText.of("<text>", spec)
-    return publish(compile_source(source, params))
+    if isinstance(spec, Path):
+        return publish(compile_source(files.read_source(spec), params))
+    if not isinstance(spec, str) or (spec.endswith(_ENDINGS) and len(spec.split()) == 1):
+        shown = spec if isinstance(spec, str) else type(spec).__name__
+        what = f"`compile` takes the text of a spec, or a `Path`, not {shown!r}"
+        way = "for a file write compile(Path(...)), for a bundle load(...)"
+        raise UsageError([diagnostic("D880", what=what, help=way)])
+    return publish(compile_source(SourceText.of("<text>", spec), params))
 
 
 def load(path: str | Path) -> Bundle:

@@ -69,17 +69,19 @@ class BoundDemonstration:
         return self.demonstration.name
 
 
-def load_demonstrations(paths: Sequence[str | Path]) -> tuple[Demonstration, ...]:
+def load_demonstrations(paths: str | Path | Sequence[str | Path]) -> tuple[Demonstration, ...]:
     """Read all demonstrations of some files, in the order of the files.
 
     Not in the paper: file formats.
+
+    Args:    paths: one file, or several.
 
     Returns: demonstrations; a file may hold several.
     Raises: DataError: some files cannot be used; it carries the diagnostics of all of them.
     """
     found: list[Demonstration] = []
     problems: list[Diagnostic] = []
-    for path in paths:
+    for path in [paths] if isinstance(paths, str | Path) else paths:
         try:
             recordings = read_recordings(Path(path))
         except InputError as error:

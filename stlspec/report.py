@@ -24,7 +24,7 @@ from stlspec.envs.model import Environment
 from stlspec.formulas import FormulaResult
 from stlspec.learning import Outcome
 from stlspec.rewards import RewardMap
-from stlspec.scores import DemonstrationScore, Ranking, number
+from stlspec.scores import DemonstrationScore, Ranking, moment, number
 
 Progress = Callable[[int, int, int], None]
 _WIDTH_OF_FILES = 200
@@ -182,7 +182,7 @@ def print_formula(results: Sequence[FormulaResult], stream: TextIO) -> None:
         table.add_column(heading, justify="right" if heading == "robustness" else "left", overflow="fold")
     for row in results:
         result, witness = row.result, row.result.witness
-        where = f"sample {witness.sample}: {witness.reason}" if witness else result.reason
+        where = f"{moment(result)}: {witness.reason}" if witness else result.reason
         verdict = Text(result.verdict.value, _STYLES.get(result.verdict.value, ""))
         table.add_row(Text(row.name), verdict, shown_number(result.robustness), Text(where))
     console_for(stream).print(table)
@@ -220,7 +220,7 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
         mark = Text(f"  {_MARKS[verdict]} {requirement.name}", _STYLES.get(verdict, ""))
         held = "holds" if verdict == "satisfied" else "fails"
         margin = f"{held} with robustness {shown_number(result.robustness)}"
-        why = f"decided at sample {result.witness.sample}: {result.witness.reason}" if result.witness else ""
+        why = f"decided at {moment(result)}: {result.witness.reason}" if result.witness else ""
         table.add_row(mark, requirement.strength, margin, Text(why, "dim"))
     console.print(table)
     drawing = path_on_map(environment, outcome.states)

@@ -12,9 +12,11 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement
+from stlspec.compiler.printing import number_text
 from stlspec.demos import BoundDemonstration, Demonstration, OnNan, bind
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, diagnostic
+from stlspec.lang.units import STEP
 from stlspec.semantics.evaluation import End, Evaluation, RequirementResult, Verdict, evaluate
 
 Label = Literal["good", "incomplete", "bad"]
@@ -258,6 +260,15 @@ def _requirement_score(requirement: Requirement, demonstration: str, result: Req
     return RequirementScore(bounded, result, reason)
 
 
+def moment(result: RequirementResult) -> str:
+    """Name the sample that decides a result, with its time where time is not counted in samples."""
+    witness, trace = result.witness, result.origin.trace
+    if witness is None:
+        return ""
+    timed = trace.unit != STEP
+    return f"sample {witness.sample}" + (f" ({number_text(witness.time)} {trace.unit})" if timed else "")
+
+
 def failure(name: str, result: RequirementResult) -> str:
     """Say why and when a requirement fails, such as "avoid fails at sample 3: d_obs = 0, needs >= 1".
 
@@ -265,5 +276,5 @@ def failure(name: str, result: RequirementResult) -> str:
     """
     if result.verdict is not Verdict.VIOLATED:
         return ""
-    at = "" if result.witness is None else f" at sample {result.witness.sample}"
+    at = "" if result.witness is None else f" at {moment(result)}"
     return f"{name} fails{at}: {result.reason}"

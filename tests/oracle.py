@@ -40,6 +40,10 @@ class Oracle:
         """Truth of a formula at every sample."""
         return self._once("holds", index, lambda i: self._formula(i, _BOOLEAN))
 
+    def within(self, index, algebra):
+        """Value of a formula at every sample in any algebra, a dictionary such as `_ROBUST`."""
+        return self._once(algebra["name"], index, lambda i: self._formula(i, algebra))
+
     def _once(self, kind, index, compute):
         if (kind, index) not in self._memo:
             self._memo[kind, index] = compute(index)

@@ -15,6 +15,10 @@ TEXT = "signal x\nparam c = 1\nhard up: always (x >= c)\nsoft high depends on up
 def test_text_is_a_spec_and_a_path_is_a_file() -> None:
     assert stlspec.compile(TEXT).requirements[0].name == "up"
     assert stlspec.compile(SPECS / "example_1.stl").name == "example_1"
+    with pytest.raises(stlspec.UsageError, match=r"Path\(\.\.\.\)"):
+        stlspec.compile("specs/example_1.stl")
+    with pytest.raises(stlspec.UsageError, match="int"):
+        stlspec.compile(42)  # type: ignore[arg-type]
     with pytest.raises(stlspec.SpecError) as caught:
         stlspec.compile("no spec at all")
     assert caught.value.diagnostics[0].code == "S003"
@@ -58,6 +62,16 @@ def test_a_bundle_cannot_be_changed() -> None:
     bundle = stlspec.compile(TEXT)
     with pytest.raises(AttributeError):
         bundle.name = "other"  # type: ignore[misc]
+
+
+def test_a_bundle_shows_what_it_is_in_one_line() -> None:
+    shown = repr(stlspec.compile(TEXT))
+    assert shown.startswith("<Bundle without a name: up, high; meaning ")
+
+
+def test_one_path_of_demonstrations_needs_no_list() -> None:
+    path = SPECS / "demos" / "grid_5x5.jsonl"
+    assert len(stlspec.load_demonstrations(path)) == len(stlspec.load_demonstrations([path])) == 4
 
 
 def test_the_graph_carries_weights() -> None:

@@ -7,17 +7,21 @@ the head of each command, so that the other commands start fast.
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
 from stlspec.cli.output import Format, ScoreFormat, print_json, warn
 from stlspec.errors import GateError, UsageError, diagnostic
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from stlspec.api import Bundle
     from stlspec.envs.model import Environment
     from stlspec.scores import Ranking
+    from stlspec.semantics.explain import Explanation
 
 
 class Gate(StrEnum):
@@ -102,27 +106,86 @@ def score(
     map_file: MapOption = None,
     demo_env: DemoEnv = None,
     demo_map: DemoMap = None,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="say what decides each value, and what would turn it")
+    ] = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="OUT", help="a folder, or a .png or .svg file, for pictures")
+    ] = None,
     output: Annotated[ScoreFormat, typer.Option("--format", help="how to print")] = ScoreFormat.TEXT,
 ) -> None:
     """Score and rank demonstrations against a spec, and say why they fail."""
     from stlspec import api, report, scores
     from stlspec.demos import load_demonstrations
 
+    _check_explained(explain, output)
     bundle = api.read(spec, read_params(params))
     environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
         env, env_arg, map_file
     )
-    ranking = scores.score(
-        bundle, load_demonstrations(demonstrations), environment, end=end.value, at=at, on_nan=on_nan.value
-    )
+    loaded = load_demonstrations(demonstrations)
+    draw = _plotter(plot, len(loaded)) if plot is not None else None
+    ranking = scores.score(bundle, loaded, environment, end=end.value, at=at, on_nan=on_nan.value)
+    explanations = _explanations(bundle, ranking) if explain or draw else []
+    if draw is not None:
+        draw(bundle, ranking, explanations)
     if output is ScoreFormat.JSON:
-        print_json(ranking.to_json())
+        print_json(_with_explanations(ranking, explanations) if explain else ranking.to_json())
     elif output is ScoreFormat.CSV:
         print(report.ranking_csv(ranking), end="")
     else:
         report.print_ranking(ranking, sys.stdout)
+        if explain:
+            _print_explanations(ranking, explanations)
     if require is not None and not _passes(ranking, require):
         raise typer.Exit(GateError.exit_code)
+
+
+def _check_explained(explain: bool, output: ScoreFormat) -> None:
+    if explain and output is ScoreFormat.CSV:
+        what = "a CSV table has no room for explanations"
+        raise UsageError([diagnostic("D880", what=what, help="use --format json, or leave out --explain")])
+
+
+def _explanations(bundle: "Bundle", ranking: "Ranking") -> "list[dict[str, Explanation]]":
+    """Explain every requirement on every demonstration."""
+    from stlspec.semantics.explain import explain
+
+    return [{n: explain(bundle, n, x.result) for n, x in d.requirements.items()} for d in ranking.demonstrations]
+
+
+def _with_explanations(ranking: "Ranking", explanations: "list[dict[str, Explanation]]") -> dict[str, Any]:
+    """Return the document of the scores, with an explanation in each requirement."""
+    document = ranking.to_json()
+    for row, found in zip(document["demonstrations"], explanations, strict=True):
+        for name, explanation in found.items():
+            row["requirements"][name]["explanation"] = explanation.to_json()
+    return document
+
+
+def _print_explanations(ranking: "Ranking", explanations: "list[dict[str, Explanation]]") -> None:
+    """Print the explanations of each demonstration, best first as in the table."""
+    rows = sorted(zip(ranking.demonstrations, explanations, strict=True), key=lambda row: -(row[0].rank or 0))
+    for demonstration, found in rows:
+        print(f"\n{demonstration.name}")
+        for explanation in found.values():
+            print("\n".join(f"  {line}" for line in explanation.lines()))
+
+
+def _plotter(out: Path, n_demonstrations: int) -> "Callable[[Bundle, Ranking, list[dict[str, Explanation]]], None]":
+    """Check, before any work, that pictures can be drawn; return what draws them."""
+    from stlspec.pictures.contents import picture_of
+    from stlspec.pictures.drawing import check_target, draw_picture, picture_files
+
+    check_target(out, n_demonstrations)
+
+    def draw(bundle: "Bundle", ranking: "Ranking", explanations: "list[dict[str, Explanation]]") -> None:
+        files = picture_files(out, [d.name for d in ranking.demonstrations])
+        for file, demonstration, found in zip(files, ranking.demonstrations, explanations, strict=True):
+            draw_picture(picture_of(bundle, demonstration, found), file)
+            print(f"drawn: {file}", file=sys.stderr)
+
+    return draw
 
 
 def _passes(ranking: "Ranking", gate: Gate) -> bool:
@@ -150,6 +213,7 @@ def reward(
     from stlspec.compiler.files import write_bytes
     from stlspec.demos import load_demonstrations
 
+    spare_inputs(out, [spec, *demonstrations])
     bundle = api.read(spec, read_params(params))
     environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
         env, env_arg, map_file

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
 from stlspec.cli.output import Format, GraphFormat, counted, error_document, print_diagnostics, print_json
 from stlspec.compiler import bundle_file, files
 from stlspec.compiler.compiling import check_source
@@ -99,6 +99,7 @@ def compile_spec(
     output: FormatOption = Format.TEXT,
 ) -> None:
     """Compile a spec into a bundle that every other command takes."""
+    spare_inputs(out, [spec])
     bundle = files.read_spec(spec, read_params(params))
     files.write_bytes(out, bundle_file.dump(bundle))
     meaning = bundle_file.meaning_sha256(bundle)

@@ -4,20 +4,24 @@ In: the words of the command line. Out: an exit code. This is the only place tha
 of the user leaves as a diagnostic, a fault of stlspec as X901 without a traceback.
 """
 
+import errno
 import os
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
+from itertools import pairwise
 from typing import Annotated, Any
 
 import typer
 
 from stlspec import __version__
-from stlspec.cli import data, language, training
+from stlspec.cli import conformance, data, language, training
 from stlspec.cli.options import expand_many
 from stlspec.cli.output import error_document, print_diagnostics, print_json
 from stlspec.errors import Diagnostic, StlspecError, UsageError, diagnostic
 
 INTERNAL, INTERRUPTED = 3, 130
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 def _version(wanted: bool) -> None:
@@ -36,7 +40,8 @@ def _root(
 
 def build() -> typer.Typer:
     """Return the app with all commands."""
-    app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None)
+    names = {"help_option_names": ["-h", "--help"]}
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings=names)
     app.callback()(_root)
     app.command("check")(language.check)
     app.command("explain")(language.explain)
@@ -46,16 +51,21 @@ def build() -> typer.Typer:
     app.command("score")(data.score)
     app.command("reward")(data.reward)
     app.command("learn")(training.learn)
+    app.command("conform")(conformance.conform)
     return app
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # signs such as ✓ where the terminal has ASCII only
     try:
         result = typer.main.get_command(build()).main(
-            args=expand_many(words), prog_name="stlspec", standalone_mode=False
+            args=expand_many(words or ["--help"]), prog_name="stlspec", standalone_mode=False
         )
+        sys.stdout.flush()
     except StlspecError as error:
         return _fail(words, error.exit_code, error.diagnostics)
     except (KeyboardInterrupt, typer.Abort):
@@ -63,13 +73,25 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(words, INTERRUPTED, [])
     except BrokenPipeError:
         # The reader has gone: what remains in the buffer must not raise again at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence_stdout()
         return 0
+    except OSError as error:
+        if error.errno not in _FULL:
+            return _unexpected(words, error)
+        _silence_stdout()
+        problem = (error.strerror or str(error)).lower()
+        found = diagnostic("S092", file="the output", verb="write", problem=problem, help="is there space left?")
+        print_diagnostics([found], sys.stderr)
+        return UsageError.exit_code
     except typer.Exit as stop:
         return stop.exit_code
     except Exception as error:
         return _unexpected(words, error)
     return result if isinstance(result, int) else 0
+
+
+def _silence_stdout() -> None:
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _unexpected(words: Sequence[str], error: Exception) -> int:
@@ -78,8 +100,8 @@ def _unexpected(words: Sequence[str], error: Exception) -> int:
         message: Any = getattr(error, "format_message", lambda: str(error))()
         if not message:  # no command was given: the help has been shown
             return 2
-        what = str(message).splitlines()[0].rstrip(".")
-        found = diagnostic("D880", what=what[:1].lower() + what[1:], help=_help_hint(words))
+        what = str(message).splitlines()[0].rstrip(".").replace("Value error, ", "")
+        found = diagnostic("D880", what=what[:1].lower() + what[1:], help=_help_hint(words, what))
         return _fail(words, UsageError.exit_code, [found])
     if os.environ.get("STLSPEC_DEBUG"):
         raise error
@@ -87,14 +109,16 @@ def _unexpected(words: Sequence[str], error: Exception) -> int:
     return _fail(words, INTERNAL, [diagnostic("X901", problem=problem)])
 
 
-def _help_hint(words: Sequence[str]) -> str:
+def _help_hint(words: Sequence[str], message: str) -> str:
+    if "--demos" in words and "SPEC" in message:
+        return "`--demos` takes every path up to the next option: put SPEC before it"
     names = {name for app in [build()] for name in (c.name for c in app.registered_commands)}
     command = next((word for word in words if word in names), None)
     return f"see `stlspec {command} --help`" if command else "see `stlspec --help`"
 
 
 def _wants_json(words: Sequence[str]) -> bool:
-    pairs = zip(words, [*words[1:], ""], strict=True)
+    pairs = pairwise([*words, ""])
     return any(word == "--format=json" or (word == "--format" and after == "json") for word, after in pairs)
 
 

@@ -4,6 +4,7 @@ In: words of the command line. Out: mappings and environments, or a usage diagno
 """
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -19,6 +20,17 @@ FormatOption = Annotated[Format, typer.Option("--format", help="text for a perso
 
 MANY = ("--demos",)
 """Options that take every path up to the next option."""
+
+
+def spare_inputs(out: Path, inputs: Sequence[str | Path]) -> None:
+    """Refuse to write a result over one of the files that it is made from.
+
+    Raises: UsageError: `out` is one of `inputs`, under whatever name.
+    """
+    for path in inputs:
+        if out.exists() and Path(path).exists() and out.samefile(path):
+            what = f"`-o {out}` is one of the inputs, and would be overwritten"
+            raise UsageError([diagnostic("D880", what=what, help="choose another file for the result")])
 
 
 def read_params(given: Sequence[str] | None) -> dict[str, str]:

@@ -77,7 +77,7 @@ def learn(
     bundle = api.read(spec, read_params(params))
     environment = environment_from(env, env_arg, map_file)
     assert environment is not None
-    with _progress() as bar:
+    with _progress(out) as bar:
         outcome = learning.learn(
             bundle,
             environment,
@@ -106,13 +106,15 @@ def learn(
 
 
 @contextmanager
-def _progress() -> Iterator["Progress"]:
-    """Show a bar on stderr while episodes go by; Ctrl-C says how to go on."""
+def _progress(out: Path) -> Iterator["Progress"]:
+    """Show a bar on stderr while episodes go by; Ctrl-C says how to go on, if there is something to go on from."""
     from stlspec import report
+    from stlspec.learning.storage import has_checkpoint
 
     try:
         with report.progress(sys.stderr) as bar:
             yield bar
     except KeyboardInterrupt:
-        print("interrupted: the same command again goes on from here", file=sys.stderr)
+        if has_checkpoint(out):
+            print("the same command again goes on from the last checkpoint", file=sys.stderr)
         raise

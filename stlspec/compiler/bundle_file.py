@@ -8,6 +8,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from operator import attrgetter
 from pathlib import Path, PurePath
 from types import MappingProxyType
 from typing import Any
@@ -67,10 +68,11 @@ def _meaning(bundle: BundleData) -> Json:
     time = bundle.time
     return {
         "time": [time.kind, time.unit, time.ticks_per_unit, time.period],
-        "signals": sorted(
-            [s.name, s.type, s.unit or "", _optional(s.low), _optional(s.high), s.source or ""] for s in bundle.signals
-        ),
-        "params": sorted([p.name, number(p.value), p.unit or ""] for p in bundle.params),
+        "signals": [
+            [s.name, s.type, s.unit, _optional(s.low), _optional(s.high), s.source]
+            for s in sorted(bundle.signals, key=attrgetter("name"))
+        ],
+        "params": [[p.name, number(p.value), p.unit] for p in sorted(bundle.params, key=attrgetter("name"))],
         "requirements": [
             [r.name, r.strength, number(r.scale), r.bound, r.root, sorted(r.depends_on)] for r in bundle.requirements
         ],
@@ -85,8 +87,21 @@ def meaning_sha256(bundle: BundleData) -> str:
 
 
 def source_sha256(bundle: BundleData) -> str:
-    """Return the hash of the texts that the bundle was compiled from."""
-    return _sha256(_sources(bundle))
+    """Return the hash of the texts that the bundle was compiled from.
+
+    It covers what was taken from them as it stands, too: title, docs, formulas, names of lets are no meaning,
+    but people read them.
+    """
+    declared: tuple[Signal | Param | Requirement, ...] = (*bundle.signals, *bundle.params, *bundle.requirements)
+    return _sha256(
+        {
+            "sources": _sources(bundle),
+            "title": [bundle.name, bundle.title],
+            "docs": [part.doc for part in declared],
+            "formulas": [r.text for r in bundle.requirements],
+            "lets": dict(bundle.names),
+        }
+    )
 
 
 def _sources(bundle: BundleData) -> list[Json]:

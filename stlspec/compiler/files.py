@@ -4,6 +4,7 @@ In: a path. Out: its text as `SourceText`, or the bundle that it compiles to or 
 binary data, a folder) is refused before anything is parsed; writing is atomic.
 """
 
+import errno
 import os
 import struct
 import tempfile
@@ -40,14 +41,19 @@ def read_bytes(path: str | Path, limit: int = LARGEST_SPEC) -> bytes:
 
 
 def write_bytes(path: str | Path, data: bytes) -> None:
-    """Write a file, whole or not at all.
+    """Write a file, whole or not at all; links are followed, a device or a pipe is simply written to.
 
     Raises: InputError: it cannot be written.
     """
-    target = Path(path)
+    target = Path(os.path.realpath(path))
     temporary = None
     try:
-        handle, temporary = tempfile.mkstemp(dir=target.parent or Path(), prefix=f".{target.name}.")
+        if target.exists() and not target.is_file():
+            target.write_bytes(data)
+            return
+        if target.exists() and not os.access(target, os.W_OK):
+            raise PermissionError(errno.EACCES, "permission denied")
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
         with os.fdopen(handle, "wb") as file:
             file.write(data)
         umask = os.umask(0)

@@ -267,8 +267,8 @@ class Inference:
         return Typing("real", unit, True, value)
 
     def _all_real(self, nodes: Sequence[Expression], what: str) -> bool:
-        """Check every operand, so that each wrong one is reported."""
-        return [self._need_real(node, what) for node in nodes].count(False) == 0
+        """Check the operands of one operator; the first wrong one is reported, since the cause is the operator."""
+        return all(self._need_real(node, what) for node in nodes)
 
     def _need_real(self, node: Expression, what: str) -> bool:
         kind = self.typings[id(node)].kind

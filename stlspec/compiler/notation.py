@@ -69,7 +69,8 @@ def _text(
     word += _interval_text(interval, time)
     if len(children) > 1:
         # Tools disagree on how tightly these bind, so a mix of them keeps its parentheses.
-        return f" {word} ".join(operand(c, _COMPARISON) for c in children), _BINARY
+        least = _NOT if interval is not None else _COMPARISON
+        return f" {word} ".join(operand(c, least) for c in children), _BINARY
     if word == "not":
         return f"not {operand(children[0], _NOT)}", _NOT
     child = children[0]

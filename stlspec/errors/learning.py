@@ -57,7 +57,7 @@ CODES: tuple[Code, ...] = (
         "a reward that is 0 everywhere",
         "warning",
         message="the inferred reward is 0 in every state{reason}",
-        help="add a demonstration that meets the hard requirements; learning goes on without shaping",
+        help="add a good demonstration; an incomplete one counts only if its weighted reward is positive",
         explanation="States get a positive value only from demonstrations that meet every hard requirement. "
         "With none of them the potential is 0, and the learner falls back on the base reward.",
         bad="# stlspec learn grid.stl --env stlspec/GridWorld-v0 --demos incomplete.json --out out\n",

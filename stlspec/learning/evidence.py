@@ -102,8 +102,12 @@ def notes(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...]:
         return ()
     count = f"{evidence.bad} bad demonstration{'s' if evidence.bad > 1 else ''}"
     if method == "paper" or not mask:
-        return (f"{count}: no mask, so they act through the reward map only",)
+        through = "the reward map" if method == "paper" else "the pictures"
+        return (f"{count}: no mask, so only {through} can show what went wrong",)
     used = evidence.bad - evidence.bad_elsewhere
-    text = f"{count} act{'s' if evidence.bad == 1 else ''} through the mask and the pictures only"
-    masked = f"{used} made on this transition table, {len(evidence.violating)} pairs masked from the start"
-    return (f"{text}: {masked}",)
+    if not used:
+        return (f"{count}, made on another map: what was forbidden there may be free here, so nothing is masked",)
+    pairs = len(evidence.violating)
+    known = f"{pairs} step{'' if pairs == 1 else 's'} forbidden from the start"
+    elsewhere = "" if used == evidence.bad else f" ({evidence.bad - used} made on another map)"
+    return (f"{count}{elsewhere}: {known}; the reward does not show them",)

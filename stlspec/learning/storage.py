@@ -43,7 +43,9 @@ def claim(out: str | Path) -> Path:
             (partial / "old").rename(path)
         if path.is_dir():
             if any(path.iterdir()) and not _is_run(path):
-                raise _refused(out, "is not empty and holds no earlier run of `stlspec learn`")
+                raise _refused(out, "holds something else than an earlier run of `stlspec learn`")
+            if not os.access(path, os.W_OK):
+                raise _refused(out, "cannot be written: permission denied")
         elif path.exists():
             raise _refused(out, "exists and is not a directory")
         if partial.exists() and not partial.is_dir():
@@ -62,6 +64,7 @@ def partial_directory(path: Path) -> Path:
 
 
 def _is_run(path: Path) -> bool:
+    """Tell whether a directory holds an earlier run and nothing else: only that may be replaced."""
     result = path / RESULT
     try:
         if result.stat().st_size > _LARGEST_RESULT:
@@ -69,7 +72,11 @@ def _is_run(path: Path) -> bool:
         document = json.loads(result.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return False
-    return isinstance(document, dict) and document.get("schema") == RESULT_SCHEMA
+    if not isinstance(document, dict) or document.get("schema") != RESULT_SCHEMA:
+        return False
+    files = document.get("files")
+    names = set(map(str, files.values())) if isinstance(files, dict) else set()
+    return {entry.name for entry in path.iterdir()} <= names
 
 
 def _refused(path: str | Path, problem: str) -> UsageError:
@@ -123,6 +130,11 @@ def save_checkpoint(out: Path, fingerprint: str, state: Mapping[str, Any]) -> No
         fresh.replace(partial / "checkpoint.json")
     except OSError as error:
         raise _refused(out, f"cannot be written: {error.strerror or error}") from None
+
+
+def has_checkpoint(out: str | Path) -> bool:
+    """Tell whether an unfinished run of a directory was kept."""
+    return (partial_directory(Path(os.path.realpath(out))) / "checkpoint.json").exists()
 
 
 def load_checkpoint(out: Path, fingerprint: str) -> dict[str, Any] | None:

@@ -67,26 +67,25 @@ def picture_files(out: Path, names: Sequence[str]) -> list[Path]:
     return [out / f"{k:0{width}}_{name or 'demonstration'}.png" for k, name in enumerate(plain, start=1)]
 
 
-def draw_pictures(pictures: Sequence[Picture], files: Sequence[Path]) -> None:
-    """Draw pictures, each into its file, whole or not at all; the folder is made where there is none.
+def draw_picture(picture: Picture, file: Path) -> None:
+    """Draw a picture into a file, whole or not at all; its folder is made where there is none.
 
     Not in the paper: see `picture_of`.
 
-    Raises: InputError: a file cannot be written.
+    Raises: InputError: the file cannot be written.
     """
-    for picture, file in zip(pictures, files, strict=True):
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            problem = (error.strerror or str(error)).lower()
-            way = "name a folder that can be made and written"
-            refusal = diagnostic("S092", file=str(file.parent), verb="write", problem=problem, help=way)
-            raise InputError([refusal]) from None
-        write_bytes(file, picture_bytes(picture, file.suffix.lower().lstrip(".")))
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        problem = (error.strerror or str(error)).lower()
+        way = "name a folder that can be made and written"
+        refusal = diagnostic("S092", file=str(file.parent), verb="write", problem=problem, help=way)
+        raise InputError([refusal]) from None
+    write_bytes(file, picture_bytes(picture, file.suffix.lower().lstrip(".")))
 
 
 def picture_bytes(picture: Picture, kind: str = "png") -> bytes:
-    """Return a picture as the bytes of a PNG or SVG file; the same picture gives the same bytes."""
+    """Return a picture as the bytes of a PNG or SVG file, without the date."""
     from matplotlib import rc_context
 
     out = io.BytesIO()
@@ -103,7 +102,10 @@ def _figure(picture: Picture) -> Any:
     from matplotlib.figure import Figure
 
     panels: list[SignalPanel | RobustnessPanel] = [*picture.signals, *picture.requirements]
-    heights = [0.8 if isinstance(p, SignalPanel) and p.boolean else 1.35 for p in panels] or [1.0]
+    heights = [
+        0.8 if isinstance(p, SignalPanel) and p.boolean else 1.35 if isinstance(p, SignalPanel) else 1.15
+        for p in panels
+    ] or [1.0]
     figure = Figure(figsize=(9, sum(heights) + 1.35), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     figure.suptitle(picture.title, x=0.012, ha="left", color=_INK, fontsize=13, fontweight="bold")
@@ -129,13 +131,10 @@ def _finish(figure: Any, axes: Any, picture: Picture) -> None:
     if picture.unit == "step":
         axes[-1].xaxis.get_major_locator().set_params(integer=True)
     axes[-1].set_xlabel("sample" if picture.unit == "step" else f"time ({picture.unit})", color=_MUTED, fontsize=9)
-    more = f"   ({picture.left_out} more not drawn)" if picture.left_out else ""
-    if picture.subtitle or more:
-        colour = _LABELS.get(picture.label or "", _MUTED)
-        axes[0].annotate(
-            picture.subtitle + more, (1, 1), xycoords="axes fraction", xytext=(0, 17), textcoords="offset points",
-            ha="right", va="bottom", color=colour, fontsize=10,
-        )  # fmt: skip
+    more = f" · {picture.left_out} more not drawn" if picture.left_out else ""
+    top = 1 - 0.09 / figure.get_figheight()
+    colour = _LABELS.get(picture.label or "", _MUTED)
+    figure.text(0.988, top, picture.subtitle + more, ha="right", va="top", color=colour, fontsize=10.5)
     handles = _legend(picture)
     if handles:
         figure.legend(
@@ -149,7 +148,7 @@ def _legend(picture: Picture) -> list[Any]:
 
     handles: list[Any] = []
     if any(p.shaded for p in picture.signals):
-        handles.append(Patch(color=_BAD, alpha=0.16, linewidth=0, label="violating"))
+        handles.append(Patch(color=_BAD, alpha=0.14, linewidth=0, label="violating"))
     if any(p.marks for p in picture.signals):
         handles.append(Line2D([], [], color=_WITNESS, marker="o", linestyle="", markersize=6, label="decides"))
     if any(p.bounds for p in picture.signals):
@@ -160,8 +159,10 @@ def _legend(picture: Picture) -> list[Any]:
 def _draw_signal(axis: Any, panel: SignalPanel, times: Floats) -> None:
     unit = f" [{panel.unit}]" if panel.unit else ""
     axis.set_title(f"{panel.name}{unit}", loc="left", color=_INK, fontsize=9, pad=4)
-    for first, last in joined([span for _, span in panel.shaded]):
-        axis.axvspan(first, last, color=_BAD, alpha=0.16, linewidth=0, zorder=0)
+    for name in dict.fromkeys(name for name, _ in panel.shaded):
+        # One layer for each requirement: darker means that more of them are violated.
+        for first, last in joined([span for owner, span in panel.shaded if owner == name]):
+            axis.axvspan(first, last, color=_BAD, alpha=0.14, linewidth=0, zorder=0)
     if panel.boolean:
         _draw_curve(axis, times, panel.values, _LINE, steps=True, fill=True)
         axis.set_ylim(-0.15, 1.25)
@@ -176,6 +177,8 @@ def _draw_signal(axis: Any, panel: SignalPanel, times: Floats) -> None:
 
 def _draw_marks(axis: Any, marks: Sequence[Mark], top: float) -> None:
     """Mark the witnesses, those of one sample once, named by their requirements."""
+    from matplotlib.patheffects import withStroke
+
     places: dict[tuple[float, float], list[str]] = {}
     for mark in marks:
         places.setdefault((mark.time, float(np.clip(mark.value, -top, top))), []).append(mark.requirement)
@@ -188,7 +191,7 @@ def _draw_marks(axis: Any, marks: Sequence[Mark], top: float) -> None:
         axis.annotate(
             text, (time, value), xytext=(-5 if after else 5, 5 if above else -5), textcoords="offset points",
             ha="right" if after else "left", va="bottom" if above else "top", fontsize=7.5, color=_INK, zorder=6,
-            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "alpha": 0.75, "linewidth": 0},
+path_effects=[withStroke(linewidth=2.5, foreground="white")],
         )  # fmt: skip
 
 
@@ -215,7 +218,6 @@ def _draw_curve(
     *,
     steps: bool = False,
     fill: bool = False,
-    zero: bool = False,
 ) -> float:
     """Draw values over time; return the height at which infinities are drawn."""
     top, ticks = _range(values)
@@ -224,6 +226,8 @@ def _draw_curve(
         middle, low, high = thinned(times, drawn)
         axis.fill_between(middle, low, high, color=colour, alpha=0.45, linewidth=0, step="mid", zorder=3)
         axis.plot(middle, (low + high) / 2, color=colour, linewidth=0.8, zorder=3)
+        if fill:
+            axis.fill_between(middle, 0, (low + high) / 2, color=colour, alpha=0.18, linewidth=0, zorder=2)
     else:
         marker = {"marker": "o", "markersize": 3.2} if len(times) <= 60 and not steps else {}
         style = "steps-mid" if steps else "default"
@@ -231,7 +235,7 @@ def _draw_curve(
         if fill:
             axis.fill_between(times, 0, drawn, step="mid", color=colour, alpha=0.18, linewidth=0, zorder=2)
     if ticks:
-        kept = [t for t in axis.get_yticks() if abs(t) < top * 0.9]
+        kept = sorted({0.0, *(t for t in axis.get_yticks() if abs(t) < top * 0.9)})
         places = [*kept, *ticks]
         axis.set_yticks(
             places, [*(number_text(float(f"{t:.6g}")) for t in kept), *("∞" if t > 0 else "-∞" for t in ticks)]

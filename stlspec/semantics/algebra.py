@@ -62,9 +62,6 @@ class Algebra:
                 raise refusal(f"the algebra '{self.name}' does not fulfil {text}", _WAY_OUT[law is None])
 
 
-_WAY_OUT[law is None])
-
-
 _WAY_OUT = ("declare only laws that hold", "⊤ must be neutral for ⊗, ⊥ for ⊕, and both operations associative")
 
 
@@ -149,7 +146,8 @@ def _idempotent(a: Algebra, x: Floats, y: Floats, z: Floats) -> Any:
 
 
 def _monotone(a: Algebra, x: Floats, y: Floats, z: Floats) -> Any:
-    return (x > y) | ((a.join(x, z) <= a.join(y, z)) & (a.meet(x, z) <= a.meet(y, z)))
+    joined, met = (a.join(x, z), a.join(y, z)), (a.meet(x, z), a.meet(y, z))
+    return (x > y) | (((joined[0] <= joined[1]) | _same(*joined)) & ((met[0] <= met[1]) | _same(*met)))
 
 
 def _selective(a: Algebra, x: Floats, y: Floats, z: Floats) -> Any:

@@ -40,9 +40,10 @@ _COMPARE: dict[str, Callable[[float, float], bool]] = {
 class Change:
     """One sample of one signal, taken to another value.
 
-    before: the value as recorded. bound: the nearest value that flips; strict: the bound itself does not, what
-    lies beyond it does. value: the one to write: the bound, or the number next to it. beyond: so does every
-    value farther off. boolean: 1.0 and 0.0 stand for true and false.
+    before: the value as recorded. bound: the nearest value that flips, as a short number that differs from it by
+    no more than rounding errors do; strict: the bound itself does not flip, what lies beyond it does. value: one
+    that flips: the bound, or a number next to it. beyond: so does every value farther off. boolean: 1.0 and 0.0
+    stand for true and false.
     """
 
     signal: str
@@ -57,7 +58,11 @@ class Change:
     @property
     def text(self) -> str:
         """The change in words, such as "d_obs at sample 3 from 0 to at least 1"."""
-        before = ("true" if self.before else "false") if self.boolean else _shown(self.before)
+        if self.boolean:
+            before = "true" if self.before else "false"
+        else:
+            before = f"{self.before + 0.0:.6g}"
+            before = _shown(self.before) if before == _shown(self.bound) else before
         return f"{self.signal} at sample {self.sample} from {before} to {self.target}"
 
     @property
@@ -263,19 +268,22 @@ def _written(
     miss: float,
     limits: tuple[float, float],
 ) -> Change:
-    """Write the bound with few digits: as a value that flips, or as the one that must be passed."""
+    """Write the bound with few digits: as a value that flips, or as one that must be passed."""
     scale = max(abs(hit), abs(before) if math.isfinite(before) else 0.0)
-    chosen = hit
     for digits in range(17):
         number = float(f"{hit:.{digits}g}") + 0.0 if digits else 0.0
-        near = abs(number - hit) <= _SAME * scale and limits[0] <= number <= limits[1]
+        if abs(number - hit) > _SAME * scale or not limits[0] <= number <= limits[1]:
+            continue
         beyond = number == hit or (number > hit) == (hit > before)
-        if near and beyond and flipped(number):
-            chosen = number
+        flips = flipped(number)
+        if not flips and not beyond:
+            return Change(name, sample, before, number, True, hit)
+        if flips and beyond:
+            hit = number
             break
-    if len(number_text(miss)) < len(number_text(chosen)):
+    if len(number_text(miss)) < len(number_text(hit)):
         return Change(name, sample, before, miss, True, hit)
-    return Change(name, sample, before, chosen, False, chosen)
+    return Change(name, sample, before, hit, False, hit)
 
 
 def _code(x: float) -> int:

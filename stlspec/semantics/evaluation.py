@@ -20,7 +20,7 @@ from stlspec.compiler.passes import optimised
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, UsageError, diagnostic
 from stlspec.semantics.algebra import MIN_MAX, Algebra, checked
-from stlspec.semantics.folds import evaluate_in, is_lattice, lattice_elements
+from stlspec.semantics.folds import evaluate_in, evaluate_in_at, is_lattice, lattice_elements
 from stlspec.semantics.layout import arrange
 from stlspec.semantics.memory import keep_freed_memory
 from stlspec.semantics.reach import bounded_reach
@@ -90,19 +90,21 @@ class RequirementResult:
     """One requirement on one trace: its robustness and verdict at the reported sample.
 
     values: the robustness at every sample in min/max, whatever the algebra, ties told apart as
-    `robustness.TIE` says. smooth: the same in an algebra that is no lattice.
+    `robustness.TIE` says.
     """
 
     robustness: float
     verdict: Verdict
     origin: Origin = field(repr=False)
     values: Floats = field(repr=False)
-    smooth: Floats | None = field(default=None, repr=False)
 
     @cached_property
     def signal(self) -> Floats:
         """Robustness at every sample in the algebra that was asked for, (n_samples,)."""
-        return self.smooth if self.smooth is not None else _frozen(lattice_elements(self.origin.algebra, self.values))
+        origin = self.origin
+        if is_lattice(origin.algebra):
+            return _frozen(lattice_elements(origin.algebra, self.values))
+        return _frozen(evaluate_in(origin.algebra, origin.nodes, [origin.root], origin.trace)[0])
 
     @cached_property
     def witness(self) -> Witness | None:
@@ -251,13 +253,16 @@ def evaluate_trace(
         _check_length(bundle, trace, sample)
     roots = [r.root for r in bundle.requirements]
     exact = evaluate_nodes(*optimised(bundle.nodes, roots, MIN_MAX.laws, trace.spacing), trace)
-    smooth = [None] * len(roots) if is_lattice(algebra) else evaluate_in(algebra, bundle.nodes, roots, trace)
+    robustness = (
+        lattice_elements(algebra, np.array([values[sample] for values in exact]))
+        if is_lattice(algebra)
+        else evaluate_in_at(algebra, bundle.nodes, roots, trace, sample)
+    )
     results = {}
-    for r, values, other in zip(bundle.requirements, exact, smooth, strict=True):
-        value = lattice_elements(algebra, values[sample : sample + 1])[0] if other is None else other[sample]
+    for r, values, value in zip(bundle.requirements, exact, robustness, strict=True):
         verdict = Verdict.SATISFIED if values[sample] > 0 else Verdict.VIOLATED
         origin = Origin(bundle.nodes, r.root, trace, sample, algebra)
-        results[r.name] = RequirementResult(float(value), verdict, origin, _frozen(values), other)
+        results[r.name] = RequirementResult(float(value), verdict, origin, _frozen(values))
     return Evaluation(results)
 
 
@@ -288,8 +293,7 @@ def _evaluate_batch(
 
 def _at(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], trace: Trace, sample: int) -> Floats:
     """Evaluate a batch at one sample in an algebra that is no lattice, (n_roots, n_traces)."""
-    parts = [evaluate_in(algebra, nodes, roots, part) for _, part in batches(trace)]
-    return np.concatenate([[values[sample] for values in part] for part in parts], axis=1)
+    return np.concatenate([evaluate_in_at(algebra, nodes, roots, p, sample) for _, p in batches(trace)], axis=1)
 
 
 def _gathered(traces: Sequence[Trace], parts: Sequence[Floats]) -> Floats:

@@ -183,7 +183,7 @@ class _Search:
                 found = flipping_changes(self.found.nodes, predicate, self.trace, sample, self.declared[name], sample)
                 changes += sorted(found, key=_size)[:1]
             total = sum(_size(c) for c in changes)
-            if len(changes) == len(samples) and total < size:
+            if len(changes) == len(samples) and (not best or total < size):
                 best, size = changes, total
         return best
 

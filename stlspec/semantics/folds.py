@@ -24,6 +24,7 @@ from stlspec.traces import Trace
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 _PAIRS = 2**20
 """Of the pairs of samples that until looks at, this many are held at a time."""
@@ -51,7 +52,7 @@ def fold_windows(
     Returns: the folds, of the shape of `values`; the folds of 1, 2, 4, ... values from every sample on.
     """
     lengths, places = end - begin, begin.copy()
-    result = np.full(values.shape, neutral)
+    result: Floats = np.full(values.shape, neutral, dtype=values.dtype)
     tables = [values]
     for digit in range(int(lengths.max()).bit_length()):
         size = 1 << digit
@@ -170,14 +171,14 @@ def _accumulated(own: Floats, slope: Floats) -> Floats:
     return total
 
 
-def _spread(mask: NDArray[np.bool_], like: Floats) -> NDArray[np.bool_]:
+def _spread(mask: Bools, like: Floats) -> Bools:
     """Give a mask of pairs the axis of the traces, if there is one."""
-    return mask if like.ndim == 1 else mask[..., np.newaxis]
+    return mask if like.ndim == 1 else mask.reshape(*mask.shape, 1)
 
 
 def _lasting(algebra: Algebra, values: Floats) -> Floats:
     """Fold along axis 1 what stands before each place, by doubling."""
-    result = np.full(values.shape, algebra.top)
+    result: Floats = np.full(values.shape, algebra.top)
     result[:, 1:] = values[:, :-1]
     span = 1
     while span < result.shape[1]:
@@ -213,6 +214,20 @@ def evaluate_in(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], t
     return [values[r] for r in roots]
 
 
+def evaluate_in_at(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], trace: Trace, at: int) -> Floats:
+    """Evaluate formulas at one sample; else as `evaluate_in`.
+
+    Paper: as `evaluate_in`. An until is evaluated only at the samples that the wanted one depends on.
+
+    Returns: (n_roots,), for a batch (n_roots, n_traces).
+    """
+    if is_lattice(algebra):
+        return np.array([values[at] for values in evaluate_in(algebra, nodes, roots, trace)])
+    nodes, roots = optimised(nodes, roots, algebra.laws, trace.spacing)
+    values = all_values(algebra, nodes, roots, trace, at)
+    return np.array([values[r][at] for r in roots])
+
+
 def is_lattice(algebra: Algebra) -> bool:
     """Tell whether the kernels of min and max serve an algebra; not in the paper."""
     return "lattice" in algebra.laws
@@ -231,9 +246,18 @@ def lattice_elements(algebra: Algebra, values: Floats) -> Floats:
     return shown(values) if (np.abs(values) <= TIE).any() else values
 
 
-def all_values(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], trace: Trace) -> dict[int, Floats]:
-    """Evaluate all nodes below some roots by the general kernels; else as `evaluate_in`."""
+def all_values(
+    algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], trace: Trace, at: int | None = None
+) -> dict[int, Floats]:
+    """Evaluate all nodes below some roots by the general kernels.
+
+    Paper: as `evaluate_in`.
+
+    Args:    algebra, nodes, roots, trace: as `evaluate_in`. at: the only sample that is wanted of the roots.
+    Returns: for each node the values; those of until are ⊥ where what is wanted does not depend on them.
+    """
     grid = Grid(trace.times, trace.spacing)
+    wanted = {} if at is None else wanted_samples(nodes, roots, grid, at)
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):
         for index in needed_nodes(nodes, roots):
@@ -246,7 +270,7 @@ def all_values(algebra: Algebra, nodes: Sequence[Node], roots: Sequence[int], tr
                 compare(node.op, operands[0], operands[1], distances)
                 values[index] = embedded(algebra, shown(distances))
             elif node.interval is not None:
-                values[index] = _temporal(algebra, node, operands, grid)
+                values[index] = _temporal(algebra, node, operands, grid, wanted.get(index))
             else:
                 values[index] = _of_sample(algebra, node, operands, trace)
     return values
@@ -269,15 +293,48 @@ def _of_sample(algebra: Algebra, node: Node, operands: Sequence[Floats], trace: 
     return values
 
 
-def _temporal(algebra: Algebra, node: Node, operands: Sequence[Floats], grid: Grid) -> Floats:
+def _temporal(algebra: Algebra, node: Node, operands: Sequence[Floats], grid: Grid, wanted: Bools | None) -> Floats:
+    """Evaluate a bounded temporal operator; the past ones are seen backwards in time."""
+    step = -1 if node.op in PAST else 1
     operands, begin, end = facing(node, operands, grid)
     if len(operands) == 1:
         values, _ = fold_windows(*operation_of(algebra, node), operands[0], begin, end)
     else:
-        values = np.empty(operands[0].shape)
-        for pairs in until_pairs(algebra, operands[0], operands[1], begin, end, np.arange(len(values))):
+        rows = np.arange(len(begin)) if wanted is None else np.flatnonzero(wanted[::step])
+        values = np.full(operands[0].shape, algebra.bottom)
+        for pairs in until_pairs(algebra, operands[0], operands[1], begin, end, rows):
             values[pairs.rows] = pairs.result
-    return values[::-1] if node.op in PAST else values
+    return values[::step]
+
+
+def wanted_samples(nodes: Sequence[Node], roots: Sequence[int], grid: Grid, at: int) -> dict[int, Bools]:
+    """Find the samples of each formula that the roots depend on at one sample; not in the paper.
+
+    Returns: for each formula below the roots a mask, (n_samples,).
+    """
+    n = len(grid.times)
+    wanted = {root: np.arange(n) == at for root in roots}
+    for index in reversed(needed_nodes(nodes, roots)):
+        node = nodes[index]
+        if node.op in REAL or node.op in COMPARISONS:
+            continue
+        step = -1 if node.op in PAST else 1
+        mask = wanted[index][::step]
+        if node.interval is not None:
+            _, begin, end = facing(node, (), grid)
+            rows = np.flatnonzero(mask)
+            mask = _union(rows if len(node.children) == 2 else begin[rows], end[rows], n)
+        elif node.op in ("next", "prev"):
+            mask = np.concatenate([[False], mask[:-1]])
+        for child in node.children:
+            wanted[child] = mask[::step] | wanted.get(child, np.zeros(n, dtype=np.bool_))
+    return wanted
+
+
+def _union(begin: Ints, end: Ints, n: int) -> Bools:
+    """Return the mask of all ranges [begin, end), (n,)."""
+    opened, closed = np.bincount(begin, minlength=n + 1), np.bincount(end, minlength=n + 1)
+    return np.asarray(np.cumsum(opened - closed)[:n] > 0)
 
 
 def operation_of(algebra: Algebra, node: Node) -> tuple[Operation, float]:

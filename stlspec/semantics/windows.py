@@ -6,6 +6,7 @@ run backwards in time, so there is one kernel of each kind and no special case f
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,10 @@ Ints = NDArray[np.int64]
 
 # Two buffers of this many numbers stay in the processor's second-level cache.
 _BLOCK = 2**15
+# From this width on, doubling goes to _PIECE samples only, and the middle is taken in strides.
+_WIDE, _PIECE, _STRIDE = 4096, 64, 32
+# Of sorted stamps this many are looked up at a time.
+_LOOKUP = 4096
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,9 +129,21 @@ def index_windows(grid: Grid, interval: Interval) -> tuple[Ints, Ints]:
     else:
         # Clipped to the length of the trace, which changes no window, so that the sums fit into int64.
         low, high = min(low, span + 1), span if high is None else min(high, span)
-        begin = index if low == 0 else np.searchsorted(times, times + low, side="left")
-        end = np.full_like(index, n) if high == span else np.searchsorted(times, times + high, side="right")
+        begin = index if low == 0 else _positions(times, low, "left")
+        end = np.full_like(index, n) if high == span else _positions(times, high, "right")
     return begin, np.maximum(begin, end)
+
+
+def _positions(times: Ints, ahead: int, side: Literal["left", "right"]) -> Ints:
+    """Return where times + ahead belong among the times; both ascend, so each block has a short range to search."""
+    n = len(times)
+    found = np.empty(n, dtype=np.int64)
+    edges = [*np.searchsorted(times, times[::_LOOKUP] + ahead, side).tolist(), n]
+    for number, first in enumerate(edges[:-1]):
+        block = slice(number * _LOOKUP, (number + 1) * _LOOKUP)
+        part = times[first : edges[number + 1] + 1]
+        np.add(np.searchsorted(part, times[block] + ahead, side), first, out=found[block])
+    return found
 
 
 def _columns(values: Floats) -> Floats:
@@ -168,7 +185,9 @@ def _slide_even(extremum: np.ufunc, values: Floats, first: int, last: int | None
         return
     width = last - first + 1
     n_whole = len(values) - width + 1
-    _whole_windows(extremum, values, width, out[:n_whole])
+    narrow = width < _WIDE
+    slide = _whole_windows if narrow else _widest_windows if width - _PIECE > n_whole else _wide_windows
+    slide(extremum, values, width, out[:n_whole])
     if width > 1:
         # The windows that the end of the trace cuts off are suffixes.
         suffix_extremum(extremum, values[n_whole:], out[n_whole:])
@@ -202,8 +221,80 @@ def _double(extremum: np.ufunc, piece: Floats, width: int, out: Floats, buffers:
     extremum(current[: len(out)], current[shift : shift + len(out)], out=out)
 
 
+def _wide_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -> None:
+    """Slide wide windows, none cut off: a piece at each end of the window, and the pieces in between.
+
+    These begin at whole strides, so there are few of them, and a stride shares their extremum. The middle
+    begins at the first whole stride after the sample, which the first piece reaches, and ends less than a
+    piece before the window does.
+    """
+    n, shift = len(out), width - _PIECE
+    # The last pieces have no place in `out`; they begin at a whole stride, like all blocks below.
+    cut = (n - shift) // _STRIDE * _STRIDE
+    _whole_windows(extremum, values[: n + _PIECE - 1], _PIECE, out)
+    last = np.empty((n - cut, out.shape[1]))
+    _whole_windows(extremum, values[cut + shift :], _PIECE, last)
+    strides = np.concatenate([out[::_STRIDE], last[n + -n % _STRIDE - cut - shift :: _STRIDE]])
+    count = width // _STRIDE - 2
+    middles = np.empty((len(strides) - count + 1, out.shape[1]))
+    _whole_windows(extremum, strides, count, middles)
+    rows = max(_STRIDE, min(_BLOCK // out.shape[1], shift) // _STRIDE * _STRIDE)
+    for begin, end, ends in ((0, cut, out[shift:]), (cut, n, last)):
+        for top in range(begin, end, rows):
+            target = out[top : min(top + rows, end)]
+            extremum(target, ends[top - begin : top - begin + len(target)], out=target)
+            _per_stride(extremum, middles[top // _STRIDE + 1 :], target)
+
+
+def _widest_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -> None:
+    """Slide windows that all share their middle: before it a suffix, behind it what is read up to there."""
+    n = len(out)
+    suffix_extremum(extremum, values[:n], out)
+    extremum(out, extremum.reduce(values[n:width], axis=0), out=out)
+    behind = np.empty((n - 1, out.shape[1]))
+    if n > 1:
+        suffix_extremum(extremum, values[: width - 1 : -1], behind[::-1])
+    extremum(out[1:], behind, out=out[1:])
+
+
+def _per_stride(extremum: np.ufunc, values: Floats, out: Floats) -> None:
+    """Join value number i to stride number i of `out`; the last stride may be cut off."""
+    n_whole = len(out) // _STRIDE
+    whole = out[: n_whole * _STRIDE].reshape(n_whole, _STRIDE, out.shape[1])
+    extremum(whole, values[:n_whole, None], out=whole)
+    if n_whole * _STRIDE < len(out):
+        rest = out[n_whole * _STRIDE :]
+        extremum(rest, values[n_whole], out=rest)
+
+
 def _slide_uneven(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, out: Floats) -> None:
-    """Slide over the samples begin[i] to end[i], by the same doubling, one level after the other."""
+    """Slide over the samples begin[i] to end[i], block by block."""
+    n, k = out.shape
+    rows = max(3 * int((end - begin).max()), _BLOCK // k, 1)
+    for top in range(0, n, rows):
+        block = slice(top, top + rows)
+        first, last = int(begin[top]), int(end[block][-1])
+        _block_uneven(extremum, values[first:last], begin[block] - first, end[block] - first, out[block])
+
+
+def _block_uneven(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, out: Floats) -> None:
+    lengths = end - begin
+    shortest, longest = int(lengths.min()), int(lengths.max())
+    if shortest == 0 or longest > 4 * shortest:
+        _by_length(extremum, values, begin, end, out)
+        return
+    current, span = values, 1
+    while 2 * span <= shortest:
+        current, span = extremum(current[:-span], current[span:]), 2 * span
+    # A window is at most eight pieces, which may overlap.
+    last = end - span
+    current.take(last, axis=0, out=out, mode="clip")
+    for done in range(0, longest - span, span):
+        extremum(out, current.take(np.minimum(begin + done, last), axis=0), out=out)
+
+
+def _by_length(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, out: Floats) -> None:
+    """Slide over windows of very unequal length, by doubling: each level serves the windows of its length."""
     lengths = end - begin
     out[lengths == 0] = _identity(extremum)
     # frexp counts the binary digits: level l holds lengths from 2**l to 2**(l+1) - 1, level -1 the length 0.

@@ -118,3 +118,26 @@ def test_eval_points_into_the_formula(files: list[str], capsys: pytest.CaptureFi
     assert "<formula>:1:7" in err
     assert run(["eval", "always (d_obs > 0", files[0]]) == 1
     assert run(["eval", "always (d_ops > 0)", files[0]]) == 2
+
+
+def test_explain_says_what_decides_and_what_would_turn_it(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["score", GRID, *files, "--explain"]) == 0
+    out = capsys.readouterr().out
+    assert "to hold     d_obs at sample 3 from 0 to at least 1" in out
+    assert out.index("rank") < out.index("decided by")
+    assert run(["score", GRID, files[1], "--explain", "--format", "json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["demonstrations"]
+    assert row["requirements"]["avoid"]["explanation"]["violations"] == [[3, 3]]
+    assert run(["score", GRID, files[1], "--explain", "--format", "csv"]) == 2
+    assert "--format json" in capsys.readouterr().err
+
+
+def test_plot_draws_each_demonstration(files: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    assert run(["score", GRID, *files, "--plot", str(tmp_path / "pictures"), "--format", "json"]) == 0
+    assert "explanation" not in json.loads(capsys.readouterr().out)["demonstrations"][0]["requirements"]["avoid"]
+    assert sorted(p.name for p in (tmp_path / "pictures").iterdir()) == ["1_good_csv.png", "2_bad_csv.png"]
+    assert run(["score", GRID, files[0], "--plot", str(tmp_path / "one.svg")]) == 0
+    assert (tmp_path / "one.svg").read_bytes().startswith(b"<?xml")
+    assert run(["score", GRID, *files, "--plot", str(tmp_path / "two.png")]) == 2
+    assert not (tmp_path / "two.png").exists()

@@ -104,6 +104,40 @@ def test_wrong_use_is_said_in_one_line_with_a_way_out(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_without_words_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    for words in ([], ["-h"], ["score", "-h"]):
+        code, out, err = outcome(words, capsys)
+        assert (code, err) == (0, "")
+        assert out.startswith("Usage: stlspec")
+
+
+def test_a_result_never_replaces_an_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spec, demo = tmp_path / "x.stl", tmp_path / "x.jsonl"
+    spec.write_text(Path(LAKE).read_text())
+    demo.write_text(Path(LAKE_DEMOS).read_text())
+    for words, precious in ((["compile", str(spec)], spec), (["reward", str(spec), str(demo)], demo)):
+        before = precious.read_bytes()
+        code, _, err = outcome([*words, "-o", str(precious)], capsys)
+        assert (code, precious.read_bytes()) == (2, before)
+        assert "is one of the inputs" in err
+
+
+def test_a_terminal_without_the_signs_gets_substitutes() -> None:
+    command = [sys.executable, "-m", "stlspec", "score", LAKE, LAKE_DEMOS]
+    done = subprocess.run(command, capture_output=True, env={"PYTHONIOENCODING": "ascii"}, check=False)
+    assert done.returncode == 0
+    assert b"? 0" in done.stdout
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
+def test_a_full_disk_is_no_fault_of_ours() -> None:
+    command = f"{sys.executable} -m stlspec score {LAKE} {LAKE_DEMOS} --format json > /dev/full"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "S092" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_a_fault_of_ours_is_x901_without_a_traceback(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -7,7 +7,6 @@ from stlspec.compiler.model import Binding
 from stlspec.lang.parse import parse, parse_formula
 from stlspec.source import SourceText
 
-
 CHAIN = "hard r0: true\n" + "".join(f"soft r{i} depends on r{i - 1}: true\n" for i in range(1, 6))
 
 

@@ -61,7 +61,9 @@ def test_a_reward_of_0_is_a_warning(small):
 
 def test_the_report_says_what_bad_demonstrations_did(small):
     evidence = gathered(small)
-    assert "2 pairs masked" in notes(evidence, "shaped", True)[0]
-    assert "mask and the pictures only" in notes(evidence, "plain", True)[0]
-    assert "reward map only" in notes(evidence, "paper", False)[0]
+    assert "2 steps forbidden from the start" in notes(evidence, "shaped", True)[0]
+    assert "forbidden from the start" in notes(evidence, "plain", True)[0]
+    assert "another map" in notes(replace(evidence, bad_elsewhere=evidence.bad), "shaped", True)[0]
+    assert "only the pictures" in notes(evidence, "shaped", False)[0]
+    assert "only the reward map" in notes(evidence, "paper", False)[0]
     assert notes(replace(evidence, bad=0), "shaped", True) == ()

@@ -7,7 +7,8 @@ import pytest
 from stlspec.errors import UsageError
 from stlspec.learning.storage import claim, discard, dumps, load_checkpoint, publish, save_checkpoint
 
-RUN = {"result.json": lambda place: place.write_text('{"schema": "stlspec.learn/1", "n": 1}')}
+RESULT = {"schema": "stlspec.learn/1", "n": 1, "files": {"result": "result.json", "old": "old.txt"}}
+RUN = {"result.json": lambda place: place.write_text(json.dumps(RESULT))}
 
 
 def code(caught):
@@ -26,6 +27,15 @@ def test_an_earlier_run_is_replaced_as_a_whole(tmp_path):
     publish(claim(tmp_path / "out"), {**RUN, "old.txt": lambda place: place.write_text("")})
     publish(claim(tmp_path / "out"), RUN)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["result.json"]
+
+
+def test_a_run_to_which_the_user_added_files_is_not_replaced(tmp_path):
+    publish(claim(tmp_path / "out"), RUN)
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    with pytest.raises(UsageError) as caught:
+        claim(tmp_path / "out")
+    assert code(caught) == "D872"
+    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
 
 
 def test_an_empty_directory_is_taken(tmp_path):

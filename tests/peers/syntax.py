@@ -61,7 +61,46 @@ def mstlo(formula):
     )
 
 
-WRITERS = {"rtamt": rtamt, "pybanquo": pybanquo, "reelay": reelay, "mstlo": mstlo}
+def stlrom(formula):
+    """STLRom; an operator without interval has no other spelling than a long one."""
+    if formula[0] == "pred":
+        _, signal, sign, bound = formula
+        return f"{signal}[t] {sign} {number_text(bound)}"
+    words = {"G": "alw_", "F": "ev_", "U": "until_", "not": "not"}
+    return _written(formula, stlrom, words, {"and": "and", "or": "or", "implies": "=>"}, "[{}, {}]")
+
+
+def moonlight(formula):
+    """MoonLight; implication is spelled out, since `=>` means >= there."""
+    if formula[0] == "pred":
+        _, signal, sign, bound = formula
+        return f"({signal} {sign} {number_text(bound)})"
+    if formula[0] == "implies":
+        return moonlight(["or", ["not", formula[1]], formula[2]])
+    words = {"G": "globally", "F": "eventually", "U": "until", "not": "!"}
+    return _written(formula, moonlight, words, {"and": "&", "or": "|"}, " [{}, {}]")
+
+
+def stlspec(formula):
+    """The language itself, bounds counting samples."""
+    if formula[0] == "pred":
+        _, signal, sign, bound = formula
+        return f"{signal} {sign} {number_text(bound)}"
+    words = {"G": "always", "F": "eventually", "U": "until", "not": "not"}
+    past = {"H": "historically", "O": "once", "S": "since"}
+    infix = {"and": "and", "or": "or", "implies": "implies"}
+    return _written(formula, stlspec, words | past, infix, "[{}, {}]")
+
+
+WRITERS = {
+    "rtamt": rtamt,
+    "pybanquo": pybanquo,
+    "reelay": reelay,
+    "mstlo": mstlo,
+    "stlrom": stlrom,
+    "moonlight": moonlight,
+    "stlspec": stlspec,
+}
 
 
 def _written(formula, write, words, infix, brackets):

@@ -21,6 +21,13 @@ P, Q = ["pred", "x", "<=", 1.0], ["pred", "y", ">=", -0.5]
         ("reelay", ["prev", ["H", [2, "inf"], P]], "pre (historically[2:] ({x <= 1}))"),
         ("mstlo", ["U", [0, 2], P, ["and", P, Q]], "(x <= 1) U[0, 2] (y >= -0.5)"),
         ("mstlo", ["or", ["not", P], ["G", [1, 2], Q]], "(! (x <= 1)) or (G[1, 2] (y >= -0.5))"),
+        ("stlrom", ["implies", P, ["U", [0, 3], P, Q]], "(x[t] <= 1) => ((x[t] <= 1) until_[0, 3] (y[t] >= -0.5))"),
+        ("moonlight", ["implies", P, ["G", [0, 3], Q]], "(! ((x <= 1))) | (globally [0, 3] ((y >= -0.5)))"),
+        (
+            "stlspec",
+            ["and", ["O", None, P], ["U", [1, 2], P, Q]],
+            "(once (x <= 1)) and ((x <= 1) until[1, 2] (y >= -0.5))",
+        ),
     ],
 )
 def test_a_formula_is_written_as_the_tool_reads_it(tool, formula, text):

@@ -10,7 +10,7 @@ from stlspec.compiler.ir import COMPARISONS, Builder
 from stlspec.semantics.chains import bearing_samples, find_chain, values_below
 from stlspec.semantics.witness import decide
 from tests.oracle import INEXACT, NotANumberError, Oracle
-from tests.strategies import Case, STEP, random_case
+from tests.strategies import STEP, Case, random_case
 
 
 def exact_cases(count, seed, longest=12):

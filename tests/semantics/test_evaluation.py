@@ -1,6 +1,7 @@
 """A spec's requirements on one trace, on a batch, on traces of unequal length."""
 
 import json
+import math
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import MappingProxyType
@@ -8,10 +9,12 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+import stlspec
 from stlspec.compiler.bundle import BundleData, Requirement, Signal, TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.errors import DataError, UsageError
 from stlspec.semantics import robustness
+from stlspec.semantics.algebra import BOOLEAN, MIN_MAX, log_sum_exp
 from stlspec.semantics.evaluation import BatchResult, Evaluation, RequirementResult, Verdict, evaluate
 
 INF = float("inf")
@@ -55,6 +58,11 @@ def grid_world(b):
 
 
 GRID = bundle(grid_world)
+
+
+def bundle_of(formula):
+    """A compiled spec with one requirement r over the signal x."""
+    return stlspec.compile(f"signal x\nhard r: {formula}\n")
 
 
 def test_one_trace_gives_a_number_a_verdict_a_witness_and_all_values():
@@ -281,3 +289,49 @@ def test_the_conformance_vectors_hold(vector):
     result = evaluate(spec, signals, time=time, at=vector["at"])["r"]
     assert (result.robustness, result.verdict) == (float(vector["expected"]), vector["verdict"])
     assert not np.signbit(result.robustness) or result.robustness < 0
+
+
+def test_another_algebra_changes_robustness_and_signal_but_no_verdict():
+    bundle = bundle_of("always[0, 1] (x >= 1)")
+    exact, smooth, boolean = (
+        bundle.evaluate({"x": [2.0, 1.0, 3.0]}, algebra=a)["r"] for a in (MIN_MAX, log_sum_exp(1.0), BOOLEAN)
+    )
+    assert exact.signal.tolist() == [0, 0, 2]
+    assert smooth.signal == pytest.approx([-math.log(1 + math.exp(-1)), -math.log(1 + math.exp(-2)), 2])
+    assert smooth.robustness == smooth.signal[0]
+    assert boolean.signal.tolist() == [1, 1, 1]
+    assert boolean.robustness == 1
+    assert {r.verdict for r in (exact, smooth, boolean)} == {Verdict.SATISFIED}
+    assert exact.witness == smooth.witness == boolean.witness
+    assert not boolean.signal.flags.writeable
+    assert not smooth.signal.flags.writeable
+
+
+def test_a_vacuous_value_is_vacuous_in_every_algebra():
+    bundle = bundle_of("always[5, 9] (x >= 1)")
+    for algebra in (MIN_MAX, log_sum_exp(1.0), BOOLEAN):
+        assert bundle.evaluate({"x": [2.0]}, algebra=algebra)["r"].vacuous
+
+
+def test_a_batch_has_the_values_of_its_traces_in_every_algebra():
+    bundle = bundle_of("(x >= 0) until[0, 2] (x >= 1)")
+    rows = np.random.default_rng(0).normal(size=(5, 7))
+    for algebra in (log_sum_exp(0.5), BOOLEAN):
+        batch = bundle.evaluate({"x": rows}, algebra=algebra, at=1)["r"]
+        alone = [bundle.evaluate({"x": row}, algebra=algebra, at=1)["r"] for row in rows]
+        assert batch.robustness == pytest.approx([one.robustness for one in alone])
+        assert batch.satisfied.tolist() == [one.verdict is Verdict.SATISFIED for one in alone]
+        assert batch.signal == pytest.approx(np.stack([one.signal for one in alone]))
+
+
+def test_what_is_no_algebra_is_refused():
+    with pytest.raises(UsageError, match="D880"):
+        bundle_of("x >= 1").evaluate({"x": [1]}, algebra="max")
+
+
+def test_the_passes_change_no_result_and_no_witness():
+    """The witness names the node of the bundle, not that of the optimised formula."""
+    bundle = bundle_of("not eventually[0, 2] eventually[0, 1] not (x >= 1)")
+    result = bundle.evaluate({"x": [2, 1.5, 1, 0.5, 0]})["r"]
+    assert (result.robustness, result.verdict) == (-0.5, Verdict.VIOLATED)
+    assert (result.witness.sample, bundle.nodes[result.witness.predicate].op) == (3, "ge")

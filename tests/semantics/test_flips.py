@@ -110,7 +110,7 @@ def test_a_bound_is_the_least_change_of_that_sample(seed):
 def test_that_no_single_sample_suffices_is_true_of_every_sample_and_many_values(seed):
     grid = [*VALUES, -50.0, 50.0, 0.25, -0.75]
     kinds = {"several": 0, "impossible": 0}
-    for case, at in cases(250, seed, longest=7, depth=3):
+    for case, at in cases(100, seed, longest=6, depth=3):
         flip = flip_of(case, at)
         if flip.kind not in kinds:
             continue
@@ -120,7 +120,7 @@ def test_that_no_single_sample_suffices_is_true_of_every_sample_and_many_values(
             for x, y, b in product(grid, grid, (True, False)):
                 after = verdict(case, at, [("x", sample, x), ("y", sample, y), ("b", sample, b)])
                 assert after in (before, None), (case, sample, x, y, b)
-    assert min(kinds.values()) > 5
+    assert min(kinds.values()) > 2
 
 
 def explained(text, signals, name="h", time=None):

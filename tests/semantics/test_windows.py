@@ -70,10 +70,13 @@ def test_until_and_since_count_left_up_to_but_not_at_the_switch(interval, grid):
     assert np.array_equal(windows.since(left, right, grid, interval), mirrored)
 
 
-@pytest.mark.parametrize("width", [1, 2, 3, 4, 100, 2999, 4999, 5000, 6000])
-@pytest.mark.parametrize("columns", [1, 40])
-def test_long_traces_are_cut_into_blocks_without_a_seam(width, columns, monkeypatch):
+@pytest.mark.parametrize(
+    "width", [1, 2, 3, 4, 96, 97, 100, 130, 1000, 2500, 2531, 2532, 2533, 2563, 2999, 4999, 5000, 6000]
+)
+@pytest.mark.parametrize(("columns", "wide"), [(1, 2048), (40, 2048), (1, 96), (3, 96)])
+def test_long_traces_are_cut_into_blocks_without_a_seam(width, columns, wide, monkeypatch):
     monkeypatch.setattr(windows, "_BLOCK", 512)
+    monkeypatch.setattr(windows, "_WIDE", wide)
     values = np.random.default_rng(0).standard_normal((5000, columns))
     padded = np.concatenate([values, np.full((width, columns), INF)])
     expected = np.lib.stride_tricks.sliding_window_view(padded, width, axis=0)[:5000].min(axis=-1)
@@ -114,6 +117,29 @@ def test_index_windows_are_ranges_that_hold_exactly_the_window():
             for i in range(20):
                 expected = np.flatnonzero(window(grid, interval, i)).tolist()
                 assert list(range(begin[i], end[i])) == expected
+
+
+@settings(deadline=None, max_examples=50)
+@given(st.integers(1, 200), st.integers(0, 400), st.sampled_from([1, 7, 64]), st.integers(0, 99))
+def test_stamps_are_looked_up_in_blocks_without_a_seam(n, ahead, block, seed):
+    grid = uneven(n, seed)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(windows, "_LOOKUP", block)
+        begin, end = windows.index_windows(grid, (ahead, ahead + 3))
+    for i in range(n):
+        inside = np.flatnonzero(window(grid, (ahead, ahead + 3), i))
+        assert list(range(begin[i], end[i])) == inside.tolist()
+
+
+@pytest.mark.parametrize("jumps", [[1, 2, 3], [1, 1, 1, 50], [1, 400], [1] * 60 + [90] * 3])
+@pytest.mark.parametrize("interval", [(0, 5), (0, 60), (20, 45), (2, 3)])
+def test_uneven_windows_of_any_mix_of_lengths_hold_their_samples(jumps, interval, monkeypatch):
+    monkeypatch.setattr(windows, "_BLOCK", 64)
+    grid = Grid(np.cumsum(np.random.default_rng(1).choice(jumps, 700)), None)
+    values = np.random.default_rng(2).standard_normal((700, 2))
+    assert np.array_equal(windows.always(values, grid, interval), slide(values, grid, interval, np.min, INF))
+    expected = slide(values, grid, interval, np.max, -INF, past=True)
+    assert np.array_equal(windows.once(values, grid, interval), expected)
 
 
 def test_times_near_the_limit_of_int64_do_not_overflow():

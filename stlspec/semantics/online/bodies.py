@@ -1,135 +1,157 @@
-"""The operand of an outermost operator, as a Boolean mix of settled formulas and operators over such.
+"""The operand of an outermost `always`, as a conjunction of clauses over settled formulas and inner operators.
 
-In: the DAG. Out: `Body`, a tree in negation normal form. Its variables are the inner operators that look ahead;
-all else is known as soon as its sample is. A formula that looks ahead deeper has no body of this kind.
+In: the DAG. Out: clauses. Each is a disjunction of one settled mix and some inner operators that look ahead, its
+unknowns; each gets an engine of its own, whose cost grows with the number of unknowns. So conjunctions are
+multiplied out, and two `eventually` with the same window become one. All of that moves min and max about by
+the laws of lattices, which hold for the ends of enclosures as well as for values.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from stlspec.compiler.ir import FUTURE, Interval
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF, Range
 
-Signed = tuple[int, bool]
-"""A node, and whether its negation is meant."""
+_MOST_CLAUSES = 16
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
-    """op: "and", "or" with parts; "settled" or "open" (a variable) with what it stands for."""
+class Settled:
+    """A mix of settled formulas: op is "and", "or" with parts, or "formula" with a node and its sign."""
 
     op: str
-    parts: tuple["Body", ...] = ()
-    stands_for: Signed = (0, False)
+    parts: tuple["Settled", ...] = ()
+    node: int = -1
+    negated: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Inner:
-    """An inner operator: `op` is one of always, eventually, until, release; its operands are settled."""
+class Unknown:
+    """An inner operator: `op` is one of always, eventually, until, release. tail: of its value."""
 
     op: str
     interval: Interval
-    operands: tuple[Signed, ...]
+    operands: tuple[Settled, ...]
+    tail: Range
 
 
-def body_of(plan: Plan, index: int, negated: bool = False) -> Body | None:
-    """Return a formula or its negation as a body; None if it looks ahead through more than one operator.
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """The disjunction of a settled mix and of unknowns."""
+
+    settled: Settled
+    unknowns: tuple[Unknown, ...] = ()
+
+
+FALSE = Settled("or")
+
+
+def clauses_of(plan: Plan, index: int, negated: bool = False) -> list[Clause] | None:
+    """Return a formula or its negation as a conjunction of clauses.
 
     Not in the paper: it serves monitors.
+
+    Returns: clauses; None if the formula looks ahead through more than one operator, or has too many clauses.
     """
     node = plan.nodes[index]
     if plan.settled[index]:
-        return Body("settled", stands_for=(index, negated))
+        return [Clause(Settled("formula", (), index, negated))]
     if node.op == "not":
-        return body_of(plan, node.children[0], not negated)
+        return clauses_of(plan, node.children[0], not negated)
     if node.op in ("and", "or"):
-        parts = [body_of(plan, child, negated) for child in node.children]
-        if any(part is None for part in parts):
+        found = [clauses_of(plan, child, negated) for child in node.children]
+        lists = [clauses for clauses in found if clauses is not None]
+        if len(lists) < len(found):
             return None
-        op = node.op if not negated else {"and": "or", "or": "and"}[node.op]
-        return Body(op, tuple(part for part in parts if part is not None))
+        if (node.op == "and") != negated:
+            return _joined([clause for clauses in lists for clause in clauses])
+        return _multiplied(lists)
     if node.op not in FUTURE or not all(plan.settled[c] for c in node.children):
         return None
-    # Without gaps the next sample is the one a tick ahead; with gaps nobody knows when it comes.
-    return Body("open", stands_for=(index, negated)) if node.op != "next" or plan.counted else None
+    if node.op == "next" and not plan.counted:
+        return None  # With gaps nobody knows when the next sample comes.
+    return [Clause(FALSE, (_unknown(plan, index, negated),))]
 
 
-def conjuncts(body: Body) -> list[Body]:
-    """Return what a body is the conjunction of; settled parts as one."""
-    if body.op != "and":
-        return [body]
-    parts = [part for whole in body.parts for part in conjuncts(whole)]
-    settled = [part for part in parts if not variables(part)]
-    found = [part for part in parts if variables(part)]
-    return [*found, Body("and", tuple(settled))] if settled else found
-
-
-def variables(body: Body) -> list[Signed]:
-    """Return the variables of a body, each once."""
-    if body.op == "open":
-        return [body.stands_for]
-    return list(dict.fromkeys(v for part in body.parts for v in variables(part)))
-
-
-def tail_of(plan: Plan, body: Body) -> Range:
-    """Enclose a body at a sample to come."""
-    if body.op in ("and", "or"):
-        pick = min if body.op == "and" else max
-        tails = [tail_of(plan, part) for part in body.parts]
-        return pick(x[0] for x in tails), pick(x[1] for x in tails)
-    return signed_tail(plan, body.stands_for)
-
-
-def signed_tail(plan: Plan, signed: Signed) -> Range:
-    """Return the tail of a formula or its negation."""
-    low, high = plan.tails[signed[0]]
-    return (-high, -low) if signed[1] else (low, high)
-
-
-def inner_of(plan: Plan, variable: Signed) -> Inner:
-    """Return the operator that a variable stands for, its negation moved to the operands."""
-    index, negated = variable
+def _unknown(plan: Plan, index: int, negated: bool) -> Unknown:
+    """Return the operator of a node, a negation moved to its operands."""
     node = plan.nodes[index]
-    operands = tuple((child, negated) for child in node.children)
+    operands = tuple(Settled("formula", (), child, negated) for child in node.children)
+    low, high = plan.tails[index]
+    tail = (-high, -low) if negated else (low, high)
     if node.op == "next":
-        return Inner("always" if negated else "eventually", (1, 1), operands)
+        return Unknown("always" if negated else "eventually", (1, 1), operands, tail)
     assert node.interval is not None
     dual = {"always": "eventually", "eventually": "always", "until": "release"}
-    return Inner(dual[node.op] if negated else node.op, node.interval, operands)
+    return Unknown(dual[node.op] if negated else node.op, node.interval, operands, tail)
 
 
-def write(
-    body: Body,
-    values: Mapping[Signed, str],
-    settled: Callable[[Signed], str],
-    least: Callable[[list[str]], str],
-    greatest: Callable[[list[str]], str],
-) -> str:
-    """Write a body with its variables replaced by `values`; return the variable that holds it."""
-    if body.op == "open":
-        return values[body.stands_for]
-    if body.op == "settled":
-        return settled(body.stands_for)
-    parts = [write(part, values, settled, least, greatest) for part in body.parts]
-    return least(parts) if body.op == "and" else greatest(parts)
+def _multiplied(lists: Sequence[Sequence[Clause]]) -> list[Clause] | None:
+    """Return the disjunction of conjunctions as a conjunction."""
+    count = 1
+    for clauses in lists:
+        count *= len(clauses)
+    if count > _MOST_CLAUSES:
+        return None
+    return _joined([_disjunction(choice) for choice in product(*lists)])
 
 
-def fills(plan: Plan, inner: Inner) -> list[tuple[float, float, float]]:
-    """Return what an inner operator may still be worth: low, high, current.
+def _disjunction(clauses: Sequence[Clause]) -> Clause:
+    settled = tuple(clause.settled for clause in clauses if clause.settled != FALSE)
+    mix = settled[0] if len(settled) == 1 else Settled("or", settled)
+    unknowns: list[Unknown] = []
+    for unknown in dict.fromkeys(u for clause in clauses for u in clause.unknowns):
+        for i, other in enumerate(unknowns):
+            if unknown.op == other.op == "eventually" and unknown.interval == other.interval:
+                operand = Settled("or", (other.operands[0], unknown.operands[0]))
+                tail = (max(other.tail[0], unknown.tail[0]), max(other.tail[1], unknown.tail[1]))
+                unknowns[i] = Unknown("eventually", unknown.interval, (operand,), tail)
+                break
+        else:
+            unknowns.append(unknown)
+    return Clause(mix, tuple(unknowns))
+
+
+def _joined(clauses: Sequence[Clause]) -> list[Clause]:
+    """Return a conjunction with all its settled clauses as one, each other clause once."""
+    settled = tuple(clause.settled for clause in clauses if not clause.unknowns)
+    found = list(dict.fromkeys(clause for clause in clauses if clause.unknowns))
+    if settled:
+        found.append(Clause(settled[0] if len(settled) == 1 else Settled("and", settled)))
+    return found
+
+
+def settled_tail(plan: Plan, mix: Settled) -> Range:
+    """Enclose a settled mix at a sample to come."""
+    if mix.op == "formula":
+        low, high = plan.tails[mix.node]
+        return (-high, -low) if mix.negated else (low, high)
+    pick, empty = (min, INF) if mix.op == "and" else (max, -INF)
+    tails = [settled_tail(plan, part) for part in mix.parts]
+    return pick((t[0] for t in tails), default=empty), pick((t[1] for t in tails), default=empty)
+
+
+def clause_tail(plan: Plan, clause: Clause) -> Range:
+    """Enclose a clause at a sample to come."""
+    tails = [settled_tail(plan, clause.settled), *(unknown.tail for unknown in clause.unknowns)]
+    return max(t[0] for t in tails), max(t[1] for t in tails)
+
+
+def fills(plan: Plan, unknown: Unknown) -> list[tuple[float, float, float]]:
+    """Return what an unknown may still be worth, by what is known of samples to come: low, high, current.
 
     Not in the paper: it serves monitors.
 
     Returns: first while the next sample may be in its window, then while the window has not begun.
     """
-    tails = [signed_tail(plan, operand) for operand in inner.operands]
-    low, high = tails[-1]
-    if inner.op in ("always", "release"):
-        # The dual of the other two, whose bounds are those of the negated operands, swapped.
-        left = (-tails[0][1], -tails[0][0])
-        found = _fills(plan, inner.op == "release", left, (-high, -low))
-        return [(-y, -x, -z) for x, y, z in found]
-    return _fills(plan, inner.op == "until", tails[0], (low, high))
+    tails = [settled_tail(plan, operand) for operand in unknown.operands]
+    if unknown.op in ("eventually", "until"):
+        return _fills(plan, unknown.op == "until", tails[0], tails[-1])
+    # The duals: their bounds are those of the negated operands, negated and swapped.
+    negated = [(-high, -low) for low, high in tails]
+    return [(-y, -x, -z) for x, y, z in _fills(plan, unknown.op == "release", negated[0], negated[-1])]
 
 
 def _fills(plan: Plan, until: bool, left: Range, right: Range) -> list[tuple[float, float, float]]:

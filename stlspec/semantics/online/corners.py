@@ -1,20 +1,21 @@
-"""Enclosures at sample 0 of `always` over a body with several operators that look ahead.
+"""Enclosures at sample 0 of `always` over a clause with several operators that look ahead.
 
-In: at every sample the body for each combination of -inf and inf in place of its k inner operators, and what the
-sample does to each of them. Out: low, high and current value, for constant work a sample on average (it grows
-with 2^k). This is `nested` with tables of 2^k corners in place of pairs: a formula of min and max is fixed by
-its corners, the least of many is taken corner by corner, and a clamp for one unknown mixes corners in pairs.
-Samples pass through phases by age, in which other inner windows have begun or ended; each phase is a queue.
+In: at every sample the settled part of the clause, and what the sample does to each of its k inner operators.
+Out: low, high and current value, for constant work a sample on average (it grows with 2^k). This is `nested`
+with tables of 2^k corners in place of pairs: a formula of min and max is fixed by its corners, the least of many
+is taken corner by corner, and a clamp for one unknown mixes corners in pairs. Samples pass through phases by
+age, in which other inner windows have begun or ended; each phase is a queue.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from itertools import pairwise
+from typing import Any, ClassVar
 
 from stlspec.compiler.ir import Interval
 from stlspec.semantics.online.nested import FOREVER, Enclosure
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF, Range
-from stlspec.semantics.online.saving import Remembering, Unsound, items, number, numbers, optional, row_of, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, items, number, numbers, optional, row_of, whole
 
 Table = list[float]
 """Corner m has inf for the unknowns whose bits are set in m, -inf for the others."""
@@ -56,13 +57,14 @@ class Tables(Remembering):
     """
 
     __slots__ = ("_count", "_forget", "changes", "front", "least", "newer", "older")
-    STATE = {
+    STATE: ClassVar[State] = {
         "front": whole,
         "least": numbers,
         "changes": lambda value: [row_of(whole, number, number)(x) for x in items(value)],
         "newer": lambda value: [_entry(x) for x in items(value)],
         "older": lambda value: [row_of(whole, numbers, numbers)(x) for x in items(value)],
     }
+    TIMED: ClassVar[tuple[str, ...]] = ("newer", "older")
 
     def __init__(self, count: int, forget: bool) -> None:
         self._count, self._forget = count, forget
@@ -131,7 +133,9 @@ class Tables(Remembering):
             result = min(result, value_at(self.older[-1][2], moved))
         return result
 
-    def check(self) -> None:
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
         size = 2**self._count
         tables = [self.least, *(t for row in self.older for t in row[1:]), *(e for t, e in self.newer if t is not None)]
         entries = [self.changes, *(e for t, e in self.newer if t is None)]
@@ -140,7 +144,7 @@ class Tables(Remembering):
         if any(not 0 <= c[0] < self._count for e in entries for c in e) or (self.newer and self.newer[0][0] is None):
             raise Unsound("a change does not fit")
         order = [x[0] for x in self.older[::-1]] + [t for t, _ in self.newer if t is not None]
-        if any(a >= b for a, b in zip(order, order[1:], strict=False)) or self.front != (order or [FOREVER])[0]:
+        if any(a >= b for a, b in pairwise(order)) or self.front != (order or [FOREVER])[0]:
             raise Unsound("a queue is not in order")
 
 
@@ -186,8 +190,8 @@ class Corners(Remembering):
     closed: the least body of the samples at which all of them are known. queues: one for each phase.
     """
 
-    __slots__ = ("_begin", "_certain", "_close", "_end", "_phases", "_size", "_stride", "_tail", "closed", "queues")
-    STATE = {"closed": number}
+    __slots__ = ("_begin", "_certain", "_close", "_end", "_phases", "_stride", "_tail", "_top", "closed", "queues")
+    STATE: ClassVar[State] = {"closed": number}
 
     def __init__(
         self, plan: Plan, outer: Interval, tail: Range, inners: Sequence[tuple[Interval, Sequence[Enclosure], bool]]
@@ -195,7 +199,8 @@ class Corners(Remembering):
         self._begin, self._end = outer[0], FOREVER if outer[1] is None else outer[1]
         self._stride, self._certain = plan.stride, plan.certain
         self._close, self._tail = self._end - plan.stride, tail
-        self._size = 2 ** len(inners)
+        # A clause is inf as soon as one of its unknowns is.
+        self._top = [INF] * (2 ** len(inners) - 1)
         lows = {interval[0] for interval, _, _ in inners}
         ends = {interval[1] + 1 for interval, _, _ in inners if interval[1] is not None}
         begins = sorted({0} | lows | ends)
@@ -209,15 +214,15 @@ class Corners(Remembering):
     def step(self, time: int, *values: float) -> Enclosure:
         """Take the newest sample.
 
-        Args: values: the corners of the body, then for each unknown the clamp of a running operator and that of
-            one whose window has not begun, as (low, high).
+        Args: values: the settled part of the clause, then for each unknown the clamp of a running operator and
+            that of one whose window has not begun, as (low, high).
         """
         self._move(time)
         if self._begin <= time <= self._end:
-            self.queues[0].push(time, list(values[: self._size]))
+            self.queues[0].push(time, [values[0], *self._top])
         for phase, queue in zip(self._phases, self.queues, strict=True):
             if phase.changing:
-                at = [(i, self._size + 4 * i + 2 * which) for i, which in phase.changing]
+                at = [(i, 1 + 4 * i + 2 * which) for i, which in phase.changing]
                 queue.change([(i, values[j], values[j + 1]) for i, j in at])
         self._move(time + self._stride)
         return self._told(time)
@@ -246,14 +251,6 @@ class Corners(Remembering):
                 else:
                     self.closed = min(self.closed, table[0])
 
-    def save(self) -> dict[str, object]:
-        return super().save() | {"queues": [queue.save() for queue in self.queues]}
-
-    def load(self, state: object) -> None:
-        state = dict(state) if isinstance(state, dict) else {}
-        queues = items(state.pop("queues", None))
-        if len(queues) != len(self.queues):
-            raise Unsound("it has another number of queues")
-        for queue, saved in zip(self.queues, queues, strict=True):
-            queue.load(saved)
-        super().load(state)
+    def parts(self) -> list[Tables]:
+        """Return the objects that it consists of."""
+        return self.queues

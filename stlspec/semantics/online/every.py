@@ -6,7 +6,7 @@ values of the samples that are still open, from which their enclosures are compu
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from stlspec.semantics.online.late import (
 from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Ends, Plan, make_plan
 from stlspec.semantics.online.program import Program, compiled, shown
-from stlspec.semantics.online.saving import Remembering, Unsound, items, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, items, whole
 from stlspec.semantics.online.tape import Tape, reach_back
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Network(Remembering):
     """
 
     __slots__ = ("_bundle", "_found", "_inputs", "_late", "_others", "_plan", "_reach", "counts", "sinks", "tape")
-    STATE = {"counts": lambda value: [whole(x) for x in items(value)]}
+    STATE: ClassVar[State] = {"counts": lambda value: [whole(x) for x in items(value)]}
 
     def __init__(self, bundle: BundleData, plan: Plan) -> None:
         self._bundle, self._plan = bundle, plan
@@ -97,7 +97,7 @@ class Network(Remembering):
         per_unit = self._plan.base.ticks_per_unit
         new, found, timed = tuple.__new__, self._found, self._plan.base.kind != "step"
 
-        def take(time: int, value: float, upto: int) -> None:
+        def take(time: int, value: float, _: int) -> None:
             sample = counts[requirement]
             counts[requirement] = sample + 1
             stamp = self._stamp(sample) if timed else time / per_unit
@@ -108,7 +108,8 @@ class Network(Remembering):
 
     def _stamp(self, sample: int) -> float:
         """Return the time of a sample as it was given."""
-        return self.tape.columns[0][sample - self.tape.base]
+        stamps = self.tape.columns[0]
+        return stamps[min(sample - self.tape.base, len(stamps) - 1)]
 
     def drain(self) -> list[Known]:
         """Return what has become known."""
@@ -122,37 +123,37 @@ class Network(Remembering):
 
     def open_samples(self, n: int) -> list[tuple[int, Floats]]:
         """Return for each requirement its first open sample, and columns low, high, current from there on."""
-        times, columns = self.tape.arrays()
+        base = self.tape.needed(min(*self.counts, n - 1), self._reach)
+        times, columns = self.tape.arrays(base)
         found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[1:])
         result = []
         for requirement, first in zip(self._bundle.requirements, self.counts, strict=True):
-            values = three(found[requirement.root][first - self.tape.base :]) if first < n else np.empty((0, 3))
+            values = three(found[requirement.root][first - base :]) if first < n else np.empty((0, 3))
             result.append((first, values))
         return result
 
-    def stamps(self, first: int) -> list[float]:
-        """Return the times of the samples from number `first` on."""
+    def stamps(self, first: int) -> Floats:
+        """Return the times of the samples from number `first` on, (n_samples,)."""
         if self._plan.base.kind == "step":
-            return [float(i) for i in range(first, self.tape.base + len(self.tape.times))]
-        return self.tape.columns[0][first - self.tape.base :].tolist()
+            return np.arange(first, self.tape.base + len(self.tape.times), dtype=np.float64)
+        return np.frombuffer(self.tape.columns[0], dtype=np.float64)[first - self.tape.base :].copy()
 
-    def save(self) -> dict[str, Any]:
-        late = [part.save() for part in self._late.values()]
-        return super().save() | {"tape": self.tape.save(), "late": late}
+    def parts(self) -> list[Remembering]:
+        """Return the objects that it consists of."""
+        return [self.tape, *self._late.values()]
 
     def load(self, state: Any) -> None:
-        state = dict(state) if isinstance(state, dict) else {}
-        self.tape.load(state.pop("tape", None))
-        late = items(state.pop("late", None))
-        counts = state.get("counts")
-        if len(late) != len(self._late) or not isinstance(counts, list) or len(counts) != len(self.counts):
-            raise Unsound("it has another number of parts")
+        """Take over a saved state."""
+        held = self.counts
+        super().load(state)
         # The outlets hold on to this very list.
-        self.counts[:] = [whole(x) for x in counts]
-        for part, saved in zip(self._late.values(), late, strict=True):
-            part.load(saved)
-        end = self.tape.base + len(self.tape.times)
-        if len(self.tape.columns) != 1 + len(self._inputs) or not all(self.tape.base <= c <= end for c in self.counts):
+        held[:], self.counts = self.counts, held
+
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        fits = self.tape.base + len(self.tape.times) == n and len(self.counts) == len(self._bundle.requirements)
+        if not fits or not all(self.tape.base <= count <= n for count in self.counts):
             raise Unsound("the tape does not fit")
 
 

@@ -8,7 +8,7 @@ fixed table, names and numbers are bound as constants. All that can fail comes b
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.samples import as_boolean, as_real, missing, outside, refuse
-from stlspec.semantics.online.saving import Remembering, Unsound, numbers
+from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
 from stlspec.semantics.robustness import TIE
 
 _MAY_BE_NAN = frozenset({"add", "sub", "mul", "div", "pow", "sqrt", "log", "sin", "cos", "delta", "rate"})
@@ -29,13 +29,15 @@ class Memory(Remembering):
     """Numbers that are remembered from one sample to the next."""
 
     __slots__ = ("_count", "values")
-    STATE = {"values": numbers}
+    STATE: ClassVar[State] = {"values": numbers}
 
     def __init__(self, initial: Sequence[float]) -> None:
         self._count = len(initial)
         self.values = list(initial)
 
-    def check(self) -> None:
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
         if len(self.values) != self._count:
             raise Unsound("it remembers another number of values")
 
@@ -227,7 +229,7 @@ class Front:
             self._named[key] = write(index, self.plan.nodes[index])
         return self._named[key]
 
-    def _boolean(self, index: int, node: Node) -> str:
+    def _boolean(self, index: int, _: Node) -> str:
         return self.lines.let(f"INF if {self._named[index]} else NINF")
 
     def _formula(self, _: int, node: Node) -> str:

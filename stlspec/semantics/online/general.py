@@ -6,7 +6,7 @@ the others are computed again from the tape, so the work grows with the number o
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from stlspec.compiler.horizon import horizons
 from stlspec.semantics.online.arrays import Stretch, enclosures, needed, stretch, three
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF
-from stlspec.semantics.online.saving import Remembering, Unsound, number, optional, row_of, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, number, optional, row_of, whole
 from stlspec.semantics.online.tape import Tape, reach_back
 
 Floats = NDArray[np.float64]
@@ -37,12 +37,11 @@ class General(Remembering):
         *("_ahead", "_inputs", "_node", "_origin", "_others", "_plan", "_reach", "_roots", "_whole"),
         *("bounds", "done", "folded", "start", "tape"),
     )
-    STATE = {
+    STATE: ClassVar[State] = {
         "folded": whole,
         "start": optional(whole),
         "bounds": row_of(number, number),
         "done": optional(row_of(number, number, number)),
-        "tape": lambda value: value,
     }
 
     def __init__(self, plan: Plan, index: int, origin: int = 0) -> None:
@@ -56,7 +55,8 @@ class General(Remembering):
         ahead = horizons(plan.nodes, plan.base)
         known = [h for h in (ahead[c] for c in node.children) if h is not None]
         self._ahead = max(known, default=0) if len(known) == len(node.children) else None
-        self.folded, self.start = origin, None
+        self.folded = origin
+        self.start: int | None = None
         self.bounds: tuple[float, float] = (-INF, INF)
         self.done: Enclosure | None = None
         self.tape = Tape(len(self._inputs))
@@ -76,22 +76,22 @@ class General(Remembering):
             return NOWHERE
         if number_of == self._origin:
             self.start = time
-        times, columns = self.tape.arrays()
+        base = self.tape.base if self._whole else self.tape.needed(self.folded, self._reach)
+        times, columns = self.tape.arrays(base)
         span = stretch(self._plan, times)
         found = enclosures(span, self._inputs, self._others, columns)
         if self._whole:
             low, high, current = map(float, three(found[self._roots[0]])[self._origin])
             result = (low, high, current)
         else:
-            result = self._combined(span, [found[c] for c in self._roots])
+            result = self._combined(span, [found[c] for c in self._roots], self.folded - base)
         if result[0] == result[1] and not self._plan.certain:
             self.done = result
             self.tape = Tape(len(self._inputs))
         return result
 
-    def _combined(self, span: Stretch, operands: list[Floats]) -> Enclosure:
+    def _combined(self, span: Stretch, operands: list[Floats], first: int) -> Enclosure:
         assert self.start is not None and self._node.interval is not None
-        first = self.folded - self.tape.base
         ages = span.grid.times[first:] - self.start
         rest = [three(x[first:]) for x in operands]
         low, high = self._node.interval
@@ -153,14 +153,18 @@ class General(Remembering):
         self.folded += count
         self.tape.drop(self.folded, self._reach)
 
-    def save(self) -> dict[str, Any]:
-        return super().save() | {"tape": self.tape.save()}
+    def parts(self) -> list[Tape]:
+        """Return the objects that it consists of."""
+        return [self.tape]
 
-    def load(self, state: Any) -> None:
-        super().load(state)
-        saved, self.tape = state["tape"], Tape(len(self._inputs))
-        self.tape.load(saved)
-        if len(self.tape.columns) != len(self._inputs) or self.folded < self.tape.base:
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        begun = self.start is not None and 0 <= self.start <= newest
+        held = self.tape.base + len(self.tape.times)
+        if begun != (n > self._origin) or held != (n if self.done is None else 0):
+            raise Unsound("a tape does not fit")
+        if not max(self._origin, self.tape.base) <= self.folded <= max(n, self._origin):
             raise Unsound("a tape does not fit")
 
 

@@ -76,4 +76,5 @@ def _enclosed(values: Floats, at: int) -> Enclosed:
     visible = shown(values)
     visible.flags.writeable = False
     lows, highs, _ = visible.T
-    return Enclosed(*visible[at].tolist(), verdict, lows, highs)
+    shown_low, shown_high, robustness = map(float, visible[at])
+    return Enclosed(shown_low, shown_high, robustness, verdict, lows, highs)

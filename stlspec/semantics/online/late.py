@@ -9,11 +9,11 @@ time up to which no further one will follow (`upto`): a window closes when that 
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 from stlspec.semantics.online.past import Row, Since, Sliding
 from stlspec.semantics.online.ranges import INF
-from stlspec.semantics.online.saving import Remembering, Unsound, items, line_of, number, optional, rows, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, items, line_of, number, optional, rows, whole
 
 Sink = Callable[[int, float, int], None]
 
@@ -59,13 +59,13 @@ class LateNext(Late):
     """The value at the next sample; before: time of the sample that waits for it."""
 
     __slots__ = ("before",)
-    STATE = {"before": optional(whole)}
+    STATE: ClassVar[State] = {"before": optional(whole)}
 
     def __init__(self) -> None:
         super().__init__()
         self.before: int | None = None
 
-    def take(self, time: int, value: float, upto: int) -> None:
+    def take(self, time: int, value: float, _: int) -> None:
         """Take the operand's next value."""
         before, self.before = self.before, time
         if before is not None:
@@ -76,7 +76,7 @@ class LatePrev(Late):
     """The value at the previous sample."""
 
     __slots__ = ("before",)
-    STATE = {"before": number}
+    STATE: ClassVar[State] = {"before": number}
 
     def __init__(self) -> None:
         super().__init__()
@@ -101,11 +101,9 @@ class LatePast(Late):
         """Take the operand's next value."""
         self.give(time, self.part.step(time, value), upto)
 
-    def save(self) -> dict[str, Any]:
-        return self.part.save()
-
-    def load(self, state: Any) -> None:
-        self.part.load(state)
+    def parts(self) -> list[Sliding]:
+        """Return the objects that it consists of."""
+        return [self.part]
 
 
 class LateWindow(Late):
@@ -115,7 +113,8 @@ class LateWindow(Late):
     """
 
     __slots__ = ("_flip", "_high", "_low", "open", "window")
-    STATE = {"open": instants, "window": line_of(whole, number)}
+    STATE: ClassVar[State] = {"open": instants, "window": line_of(whole, number)}
+    TIMED: ClassVar[tuple[str, ...]] = ("open", "window")
 
     def __init__(self, low: int, high: int, flip: bool) -> None:
         super().__init__()
@@ -159,14 +158,15 @@ class Aligned(Late):
     queues: values that wait for those of the other operands. known: up to when each operand has come.
     """
 
-    __slots__ = ("known", "queues")
-    STATE = {
+    __slots__ = ("_count", "known", "queues")
+    STATE: ClassVar[State] = {
         "queues": lambda value: [line_of(whole, number)(x) for x in items(value)],
         "known": lambda value: [whole(x) for x in items(value)],
     }
 
     def __init__(self, count: int) -> None:
         super().__init__()
+        self._count = count
         self.queues: list[deque[Row]] = [deque() for _ in range(count)]
         self.known = [-1] * count
 
@@ -187,8 +187,11 @@ class Aligned(Late):
         """Take the values of all operands at one sample."""
         raise NotImplementedError
 
-    def check(self) -> None:
-        if len(self.queues) != len(self.known) or all(self.queues):
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        late = [row for queue in self.queues for row in queue if row[0] > newest]
+        if len(self.queues) != self._count or len(self.known) != self._count or all(self.queues) or late:
             raise Unsound("queues do not fit")
 
 
@@ -219,13 +222,9 @@ class LateSince(Aligned):
         """Take the values of all operands at one sample."""
         self.give(time, self.part.step(time, *values), upto)
 
-    def save(self) -> dict[str, Any]:
-        return super().save() | {"part": self.part.save()}
-
-    def load(self, state: Any) -> None:
-        state = dict(state) if isinstance(state, dict) else {}
-        self.part.load(state.pop("part", None))
-        super().load(state)
+    def parts(self) -> list[Since]:
+        """Return the objects that it consists of."""
+        return [self.part]
 
 
 class LateUntil(Aligned):
@@ -238,7 +237,7 @@ class LateUntil(Aligned):
     """
 
     __slots__ = ("_high", "_low", "held", "high_end", "low_end", "newer", "older", "open", "waiting")
-    STATE = Aligned.STATE | {
+    STATE: ClassVar[State] = Aligned.STATE | {
         "open": instants,
         "waiting": line_of(whole, number),
         "held": line_of(whole, number),
@@ -247,6 +246,7 @@ class LateUntil(Aligned):
         "low_end": number,
         "high_end": number,
     }
+    TIMED: ClassVar[tuple[str, ...]] = ("open", "waiting", "held", "older", "newer")
 
     def __init__(self, low: int, high: int) -> None:
         super().__init__(2)

@@ -5,7 +5,7 @@ with the number of samples unless a formula needs them all. A sample that is ref
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,7 +18,7 @@ from stlspec.errors import Diagnostic, UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.every import Known, Network, deferred, every_program
 from stlspec.semantics.online.plan import Ends, make_plan
-from stlspec.semantics.online.program import Objects, Program, Standing, shown, start_program
+from stlspec.semantics.online.program import Objects, Program, shown, start_program
 from stlspec.semantics.online.samples import refuse
 from stlspec.semantics.online.saving import Unsound
 from stlspec.semantics.robustness import shown as shown_values
@@ -68,6 +68,11 @@ class Monitor:
         """Number of samples so far."""
         return self._objects.clock.n
 
+    @property
+    def time(self) -> float:
+        """Time of the newest sample in the spec's unit, as given if it was given."""
+        return self._objects.clock.latest
+
     def update(self, sample: Mapping[str, Any], time: float | None = None) -> Any:
         """Take the next sample.
 
@@ -91,12 +96,12 @@ class Monitor:
         """
         names = [r.name for r in self._bundle.requirements]
         if self.n_samples == 0:
-            empty = np.empty((0, 3))
-            return {name: _open(0, [], empty) for name in names}
+            return {name: _open(0, np.empty(0), np.empty((0, 3))) for name in names}
         if self.reading == "start":
             clock = self._objects.clock
             rows = [np.array([row] if row[0] != row[1] else np.empty((0, 3))) for row in clock.ends()]
-            return {name: _open(0, [clock.begin][: len(row)], row) for name, row in zip(names, rows, strict=True)}
+            begin = np.array([clock.begin])
+            return {name: _open(0, begin[: len(row)], row) for name, row in zip(names, rows, strict=True)}
         network = self._network()
         found = network.open_samples(self.n_samples)
         return {name: _open(at, network.stamps(at), rows) for name, (at, rows) in zip(names, found, strict=True)}
@@ -123,7 +128,7 @@ class Monitor:
             self._bundle.requirements, network.open_samples(self.n_samples), strict=True
         ):
             values = rows[:, 2].tolist()
-            for i, (time, value) in enumerate(zip(network.stamps(first), values, strict=True)):
+            for i, (time, value) in enumerate(zip(network.stamps(first).tolist(), values, strict=True)):
                 found.append(Known(first + i, time, requirement.name, shown(value), _verdict(value)))
         return found
 
@@ -189,9 +194,8 @@ def _verdict(value: float) -> Verdict:
     return Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
 
 
-def _open(first: int, times: Sequence[float], rows: Floats) -> Open:
-    values = shown_values(rows)
-    columns = (np.arange(first, first + len(rows)), np.array(times, dtype=np.float64), *values.T)
+def _open(first: int, times: Floats, rows: Floats) -> Open:
+    columns = (np.arange(first, first + len(rows)), times, *shown_values(rows).T)
     for column in columns:
         column.flags.writeable = False
     return Open(*columns)

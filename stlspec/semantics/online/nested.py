@@ -11,11 +11,13 @@ since, `older` the least of each sample and those after it, with one change for 
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import ClassVar
 
 from stlspec.compiler.ir import Interval
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF, Range
-from stlspec.semantics.online.saving import Remembering, Unsound, items, number, row_of, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, items, number, row_of, whole
 
 Enclosure = tuple[float, float, float]
 
@@ -35,7 +37,7 @@ class Clamps(Remembering):
     """
 
     __slots__ = ("_forget", "change_high", "change_low", "front", "high", "low", "newer", "older")
-    STATE = {
+    STATE: ClassVar[State] = {
         "front": whole,
         "low": number,
         "high": number,
@@ -44,6 +46,7 @@ class Clamps(Remembering):
         "newer": lambda value: [row_of(whole, number, number)(x) for x in items(value)],
         "older": lambda value: [row_of(whole, number, number, number, number)(x) for x in items(value)],
     }
+    TIMED: ClassVar[tuple[str, ...]] = ("newer", "older")
 
     def __init__(self, forget: bool) -> None:
         self._forget = forget
@@ -121,11 +124,13 @@ class Clamps(Remembering):
             return x if x < result else result
         return result
 
-    def check(self) -> None:
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
         if self.newer and self.newer[0][0] == _CHANGE:
             raise Unsound("a change before all samples")
         order = [x[0] for x in self.older[::-1]] + [x[0] for x in self.newer if x[0] != _CHANGE]
-        if any(a >= b for a, b in zip(order, order[1:], strict=False)) or self.front != (order or [FOREVER])[0]:
+        if any(a >= b for a, b in pairwise(order)) or self.front != (order or [FOREVER])[0]:
             raise Unsound("a queue is not in order")
 
 
@@ -140,7 +145,7 @@ class Nested(Remembering):
         *("_begin", "_certain", "_changes", "_close", "_end", "_fill", "_high", "_low", "_stride", "_tail", "_wait"),
         *("closed", "running", "waiting"),
     )
-    STATE = {"closed": number}
+    STATE: ClassVar[State] = {"closed": number}
 
     def __init__(
         self, plan: Plan, outer: Interval, inner: Interval, tail: Range, fills: Sequence[Enclosure], changes: bool
@@ -227,14 +232,6 @@ class Nested(Remembering):
             value = low if self._fill[2] < 0 else high
             self.closed = min(self.closed, value)
 
-    def save(self) -> dict[str, object]:
-        parts = {"running": self.running.save(), "waiting": self.waiting.save() if self.waiting else None}
-        return super().save() | parts
-
-    def load(self, state: object) -> None:
-        state = dict(state) if isinstance(state, dict) else {}
-        self.running.load(state.pop("running", None))
-        waiting = state.pop("waiting", None)
-        if self.waiting is not None:
-            self.waiting.load(waiting)
-        super().load(state)
+    def parts(self) -> list[Clamps]:
+        """Return the objects that it consists of."""
+        return [part for part in (self.running, self.waiting) if part is not None]

@@ -5,12 +5,12 @@ Everything known is one clamp x -> max(L, min(H, x)) of the value that the rest 
 `eventually` is `always` of the negation, negated.
 """
 
-from typing import Any
+from typing import Any, ClassVar
 
 from stlspec.compiler.ir import Interval
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF, Range
-from stlspec.semantics.online.saving import Remembering, number, optional, row_of, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, number, optional, row_of, whole
 
 Enclosure = tuple[float, float, float]
 """low, high, and current: the value if the trace ends here."""
@@ -25,7 +25,7 @@ class Always(Remembering):
     """always[low, high] of a settled formula; least: of the values in its window so far."""
 
     __slots__ = ("_begin", "_certain", "_close", "_end", "_tail", "least", "result")
-    STATE = {"least": number, "result": row_of(number, number, number)}
+    STATE: ClassVar[State] = {"least": number, "result": row_of(number, number, number)}
 
     def __init__(self, plan: Plan, interval: Interval, tail: Range) -> None:
         self._begin = interval[0]
@@ -59,7 +59,7 @@ class Until(Remembering):
     """left until[low, high] right of settled formulas; best, held: L and H of the clamp."""
 
     __slots__ = ("_begin", "_certain", "_close", "_end", "_late", "_left", "_right", "best", "held")
-    STATE = {"best": number, "held": number}
+    STATE: ClassVar[State] = {"best": number, "held": number}
 
     def __init__(self, plan: Plan, interval: Interval, left: Range, right: Range) -> None:
         self._begin = interval[0]
@@ -93,7 +93,7 @@ class First(Remembering):
     """A settled formula at the first sample that it is asked for."""
 
     __slots__ = ("value",)
-    STATE = {"value": optional(number)}
+    STATE: ClassVar[State] = {"value": optional(number)}
 
     def __init__(self) -> None:
         self.value: float | None = None
@@ -109,7 +109,7 @@ class Starting(Remembering):
     """An enclosure at sample number `origin`: the samples before are not shown to it."""
 
     __slots__ = ("_origin", "part", "seen", "start")
-    STATE = {"seen": whole, "start": whole}
+    STATE: ClassVar[State] = {"seen": whole, "start": whole}
 
     def __init__(self, part: Any, origin: int) -> None:
         self.part, self._origin = part, origin
@@ -122,12 +122,15 @@ class Starting(Remembering):
             return NOWHERE
         if self.seen == self._origin + 1:
             self.start = time
-        return self.part.step(time - self.start, *values)
+        result: Enclosure = self.part.step(time - self.start, *values)
+        return result
 
-    def save(self) -> dict[str, object]:
-        return super().save() | {"part": self.part.save()}
+    def parts(self) -> list[Remembering]:
+        """Return the objects that it consists of."""
+        return [self.part]
 
-    def load(self, state: object) -> None:
-        state = dict(state) if isinstance(state, dict) else {}
-        self.part.load(state.pop("part", None))
-        super().load(state)
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        if self.seen != n or not 0 <= self.start <= max(newest, 0):
+            raise Unsound("samples are missing")

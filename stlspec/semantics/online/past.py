@@ -6,9 +6,11 @@ memory bounded by the window.
 """
 
 from collections import deque
+from itertools import pairwise
+from typing import ClassVar
 
 from stlspec.semantics.online.ranges import INF
-from stlspec.semantics.online.saving import Remembering, Unsound, line_of, number, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, line_of, number, whole
 
 Row = tuple[int, float]
 
@@ -17,7 +19,8 @@ class Sliding(Remembering):
     """The least of the values from `low` to `high` ticks back, +inf if there is none; high None: of all."""
 
     __slots__ = ("_high", "_low", "least", "waiting", "window")
-    STATE = {"waiting": line_of(whole, number), "window": line_of(whole, number), "least": number}
+    STATE: ClassVar[State] = {"waiting": line_of(whole, number), "window": line_of(whole, number), "least": number}
+    TIMED: ClassVar[tuple[str, ...]] = ("waiting", "window")
 
     def __init__(self, low: int, high: int | None) -> None:
         self._low, self._high = low, high
@@ -53,8 +56,10 @@ class Sliding(Remembering):
             window.popleft()
         return window[0][1] if window else INF
 
-    def check(self) -> None:
-        if any(a[1] >= b[1] for a, b in zip(self.window, list(self.window)[1:], strict=False)):
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        if any(a[1] >= b[1] for a, b in pairwise(self.window)):
             raise Unsound("a window is not in order")
 
 
@@ -76,7 +81,8 @@ class Since(Remembering):
     """
 
     __slots__ = ("_held", "_low", "_once", "reached", "running", "waiting")
-    STATE = {"running": number, "reached": number, "waiting": line_of(whole, number)}
+    STATE: ClassVar[State] = {"running": number, "reached": number, "waiting": line_of(whole, number)}
+    TIMED: ClassVar[tuple[str, ...]] = ("waiting",)
 
     def __init__(self, low: int, high: int | None) -> None:
         self._low = low
@@ -98,14 +104,6 @@ class Since(Remembering):
             value = min(value, self._once.step(time, right))
         return value
 
-    def save(self) -> dict[str, object]:
-        parts = [part.save() if part is not None else None for part in (self._held, self._once)]
-        return super().save() | {"parts": parts}
-
-    def load(self, state: object) -> None:
-        if not isinstance(state, dict) or not isinstance(state.get("parts"), list) or len(state["parts"]) != 2:
-            raise Unsound("parts are missing")
-        super().load({name: value for name, value in state.items() if name != "parts"})
-        for part, saved in zip((self._held, self._once), state["parts"], strict=True):
-            if part is not None:
-                part.load(saved)
+    def parts(self) -> list[Sliding]:
+        """Return the objects that it consists of."""
+        return [part for part in (self._held, self._once) if part is not None]

@@ -51,7 +51,9 @@ def make_plan(bundle: BundleData, ends: Ends = "any") -> Plan:
     base = bundle.time
     even = base.kind != "stamps"
     certain = even and ends == "horizon"
-    nodes = tuple(_on_samples(node, base.period) for node in bundle.nodes)
+    # Plain texts compare faster than the parser's tokens, which operators may be.
+    plain = (replace(node, op=str(node.op)) for node in bundle.nodes)
+    nodes = tuple(_on_samples(node, base.period) for node in plain)
     settled: list[bool] = []
     for node in nodes:
         settled.append(node.op not in FUTURE and all(settled[c] for c in node.children))
@@ -91,8 +93,8 @@ def _tails(nodes: Sequence[Node], values: dict[int, Range], certain: bool) -> di
         if node.op in COMPARISONS:
             tails[index] = ranges[index] = values[index]
         elif node.op == "prev":
-            low, high = tails[index] = ranges[node.children[0]]
-            ranges[index] = (-INF, high)
+            tails[index] = ranges[node.children[0]]
+            ranges[index] = (-INF, tails[index][1])
         else:
             of = ranges if node.op in ("historically", "once", "since") else tails
             tails[index] = _tail(node, [of[c] for c in node.children], certain)

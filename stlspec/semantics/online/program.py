@@ -49,6 +49,8 @@ class Objects:
             raise Unsound("it has another number of parts")
         for part, saved in zip(everything, state, strict=True):
             part.load(saved)
+        for part in everything:
+            part.check(self.clock.n, self.clock.ticks)
 
     def _all(self) -> Sequence[Remembering]:
         return (self.clock, self.store, *self.parts)

@@ -5,21 +5,12 @@ computed from the enclosures of their operands; each outermost temporal operator
 engine that serves it: one clamp over settled operands, queues of clamps over one level more, arrays for the rest.
 """
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from stlspec.compiler.ir import Interval
-from stlspec.semantics.online.bodies import (
-    Body,
-    Inner,
-    Signed,
-    body_of,
-    conjuncts,
-    fills,
-    inner_of,
-    tail_of,
-    variables,
-    write,
-)
+from stlspec.semantics.online.bodies import Clause, Settled, Unknown, clause_tail, clauses_of, fills
 from stlspec.semantics.online.corners import Corners
 from stlspec.semantics.online.front import Front
 from stlspec.semantics.online.general import General, inputs_of
@@ -28,7 +19,8 @@ from stlspec.semantics.online.outermost import Always, First, Starting, Until
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF
 
-MOST_VARIABLES = 4
+MOST_UNKNOWNS = 4
+"""In one clause; the tables of `corners` double with each."""
 
 Names = tuple[str, str, str]
 """The variables of low, high and current."""
@@ -104,65 +96,56 @@ class Roots:
             low_name, high_name, current = (self._lines.negated(name) for name in found)
             return high_name, low_name, current
         if node.op in ("always", "eventually"):
-            body = body_of(plan, below[0], negated=node.op == "eventually")
-            parts = [] if body is None else conjuncts(body)
-            if parts and all(len(variables(part)) <= MOST_VARIABLES for part in parts):
-                return self._conjunction(parts, index, origin)
+            clauses = clauses_of(plan, below[0], negated=node.op == "eventually")
+            if clauses is not None and all(len(clause.unknowns) <= MOST_UNKNOWNS for clause in clauses):
+                return self._conjunction(clauses, index, origin)
         names = [front.value(c) for c in inputs_of(plan, index)]
         return self._called(self._lines.part(lambda: General(plan, index, origin)), names)
 
-    def _conjunction(self, parts: list[Body], index: int, origin: int) -> Names:
-        """always of a conjunction is the conjunction of always; eventually is the negation of it all."""
+    def _conjunction(self, clauses: list[Clause], index: int, origin: int) -> Names:
+        """Write always of a conjunction as the conjunction of always; eventually is the negation of it all."""
         lines, node = self._lines, self._plan.nodes[index]
         assert node.interval is not None
-        found = [self._part(part, node.interval, origin) for part in parts]
+        found = [self._clause(clause, node.interval, origin) for clause in clauses]
         low, high, current = (lines.least([names[i] for names in found]) for i in range(3))
         if node.op == "always":
             return low, high, current
         return lines.negated(high), lines.negated(low), lines.negated(current)
 
-    def _part(self, body: Body, outer: Interval, origin: int) -> Names:
-        plan, tail, unknown = self._plan, tail_of(self._plan, body), variables(body)
-        if not unknown:
-            return self._engine(lambda: Always(plan, outer, tail), [self._corner(body, {})], origin)
-        if len(unknown) > 1:
-            return self._corners(body, unknown, outer, origin)
-        inner = inner_of(plan, unknown[0])
-        make = partial(Nested, plan, outer, inner.interval, tail, fills(plan, inner), inner.op in ("until", "release"))
-        names = [self._corner(body, {unknown[0]: end}) for end in ("NINF", "INF")]
-        return self._engine(make, [*names, *self._changes(inner)], origin)
+    def _clause(self, clause: Clause, outer: Interval, origin: int) -> Names:
+        plan, tail, unknowns = self._plan, clause_tail(self._plan, clause), clause.unknowns
+        settled = self._mix(clause.settled)
+        if not unknowns:
+            return self._engine(lambda: Always(plan, outer, tail), [settled], origin)
+        rows = [(u.interval, fills(plan, u), u.op in ("until", "release")) for u in unknowns]
+        changes = [self._changes(unknown) for unknown in unknowns]
+        if len(unknowns) == 1:
+            interval, filling, waits = rows[0]
+            make = partial(Nested, plan, outer, interval, tail, filling, waits)
+            return self._engine(make, [settled, "INF", *changes[0]], origin)
+        padded = [name for names in changes for name in [*names, "NINF", "INF"][:4]]
+        return self._engine(partial(Corners, plan, outer, tail, rows), [settled, *padded], origin)
 
-    def _corners(self, body: Body, unknown: list[Signed], outer: Interval, origin: int) -> Names:
-        plan, tail = self._plan, tail_of(self._plan, body)
-        inners = [inner_of(plan, variable) for variable in unknown]
-        rows = [(x.interval, fills(plan, x), x.op in ("until", "release")) for x in inners]
-        names = []
-        for m in range(2 ** len(unknown)):
-            ends = {variable: "INF" if m >> i & 1 else "NINF" for i, variable in enumerate(unknown)}
-            names.append(self._corner(body, ends))
-        for inner in inners:
-            names += [*self._changes(inner), "NINF", "INF"][:4]
-        return self._engine(partial(Corners, plan, outer, tail, rows), names, origin)
+    def _mix(self, mix: Settled) -> str:
+        """Write a settled mix."""
+        if mix.op == "formula":
+            name = self._front.value(mix.node)
+            return self._lines.negated(name) if mix.negated else name
+        pick = self._lines.least if mix.op == "and" else self._lines.greatest
+        return pick([self._mix(part) for part in mix.parts])
 
-    def _corner(self, body: Body, values: dict[Signed, str]) -> str:
-        return write(body, values, self._signed, self._lines.least, self._lines.greatest)
-
-    def _signed(self, signed: Signed) -> str:
-        name = self._front.value(signed[0])
-        return self._lines.negated(name) if signed[1] else name
-
-    def _changes(self, inner: Inner) -> list[str]:
+    def _changes(self, unknown: Unknown) -> list[str]:
         """Write what a sample does to an inner operator: the clamp in its window, and that before it."""
-        lines, names = self._lines, [self._signed(operand) for operand in inner.operands]
-        if inner.op == "eventually":
+        lines, names = self._lines, [self._mix(operand) for operand in unknown.operands]
+        if unknown.op == "eventually":
             return [names[0], "INF"]
-        if inner.op == "always":
+        if unknown.op == "always":
             return ["NINF", names[0]]
-        if inner.op == "until":
+        if unknown.op == "until":
             return [names[1], lines.greatest(names), "NINF", names[0]]
         return [lines.least(names), names[1], names[0], "INF"]
 
-    def _engine(self, make, names, origin: int) -> Names:  # type: ignore[no-untyped-def]
+    def _engine(self, make: Callable[[], Any], names: list[str], origin: int) -> Names:
         part = self._lines.part(make if origin == 0 else lambda: Starting(make(), origin))
         return self._called(part, names)
 

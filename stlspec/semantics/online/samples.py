@@ -7,14 +7,14 @@ here changes the state of a monitor, so that a refused sample leaves no trace.
 import difflib
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
-from stlspec.semantics.online.saving import Remembering, Unsound, number, numbers, optional, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, number, numbers, optional, whole
 
 _LONGEST_TICKS = 2.0**62
 _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
@@ -34,7 +34,13 @@ class Clock(Remembering):
     """
 
     __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "ticks")
-    STATE = {"n": whole, "ticks": whole, "first": optional(number), "stamp": optional(number), "last": numbers}
+    STATE: ClassVar[State] = {
+        "n": whole,
+        "ticks": whole,
+        "first": optional(number),
+        "stamp": optional(number),
+        "last": numbers,
+    }
 
     def __init__(self, base: TimeBase, gapless: bool) -> None:
         self._base, self._gapless = base, gapless
@@ -84,6 +90,11 @@ class Clock(Remembering):
         return ticks / self._base.ticks_per_unit
 
     @property
+    def latest(self) -> float:
+        """Time of the newest sample in the spec's unit, as offline results show it."""
+        return self.shown(self.ticks) if self.stamp is None or self._base.kind == "step" else self.stamp
+
+    @property
     def begin(self) -> float:
         """Time of the first sample in the spec's unit, as offline results show it."""
         return 0.0 if self.first is None or self._base.kind == "step" else self.first
@@ -92,7 +103,9 @@ class Clock(Remembering):
         """Return low, high and current value of each requirement."""
         return list(zip(self.last[0::3], self.last[1::3], self.last[2::3], strict=True))
 
-    def check(self) -> None:
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
         if self.n < 0 or (self.ticks < 0) != (self.n == 0) or len(self.last) % 3:
             raise Unsound("the clock is wrong")
 

@@ -8,10 +8,14 @@ numbers that are wrong; nothing in them is executed.
 import math
 from array import array
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, ClassVar
 
 INF = math.inf
+State = dict[str, Callable[[Any], Any]]
+"""The attributes that make up a state, each with the reader of its value."""
+
 LARGEST = 2**63 - 1
 
 
@@ -70,7 +74,7 @@ def rows(*kinds: Callable[[Any], Any]) -> Callable[[Any], list[tuple[Any, ...]]]
 
     def read(value: Any) -> list[tuple[Any, ...]]:
         found = [read_row(x) for x in items(value)]
-        if any(a[0] >= b[0] for a, b in zip(found, found[1:], strict=False)):
+        if any(a[0] >= b[0] for a, b in pairwise(found)):
             raise Unsound("times do not increase")
         return found
 
@@ -91,7 +95,7 @@ def optional(kind: Callable[[Any], Any]) -> Callable[[Any], Any]:
 def times(value: Any) -> "array[int]":
     """Read increasing times."""
     found = array("q", [whole(x) for x in items(value)])
-    if any(a >= b for a, b in zip(found, found[1:], strict=False)):
+    if any(a >= b for a, b in pairwise(found)):
         raise Unsound("times do not increase")
     return found
 
@@ -111,22 +115,45 @@ def plain(value: Any) -> Any:
 
 
 class Remembering:
-    """An object whose state can be saved: `STATE` names its attributes, each with the reader of its value."""
+    """An object whose state can be saved.
+
+    STATE names its attributes, each with the reader of its value; TIMED those that are rows which begin with a
+    time, or times.
+    """
 
     __slots__ = ()
-    STATE: ClassVar[Mapping[str, Callable[[Any], Any]]] = {}
+    STATE: ClassVar[State] = {}
+    TIMED: ClassVar[tuple[str, ...]] = ()
+
+    def parts(self) -> "Sequence[Remembering]":
+        """Return the objects that it consists of."""
+        return ()
 
     def save(self) -> dict[str, Any]:
         """Return the state as JSON values."""
-        return {name: plain(getattr(self, name)) for name in self.STATE}
+        state = {name: plain(getattr(self, name)) for name in self.STATE}
+        return state | {"parts": [part.save() for part in self.parts()]}
 
     def load(self, state: Any) -> None:
         """Take over a saved state. Raises: Unsound: it is none of this object's."""
-        if not isinstance(state, dict) or state.keys() != self.STATE.keys():
-            raise Unsound("parts are missing")
+        if not isinstance(state, dict) or state.keys() != self.STATE.keys() | {"parts"}:
+            raise Unsound("a value is missing")
+        parts = self.parts()
+        if len(items(state["parts"])) != len(parts):
+            raise Unsound("it has another number of parts")
         for name, kind in self.STATE.items():
             setattr(self, name, kind(state[name]))
-        self.check()
+        for part, saved in zip(parts, state["parts"], strict=True):
+            part.load(saved)
 
-    def check(self) -> None:
-        """Check what several values together must obey. Raises: Unsound: they do not."""
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey after `n` samples, the newest at that time.
+
+        Raises: Unsound: they do not.
+        """
+        for name in self.TIMED:
+            times = [row[0] if isinstance(row, tuple) else row for row in getattr(self, name)]
+            if any(time is not None and time > newest for time in times):
+                raise Unsound("a time is later than the newest sample")
+        for part in self.parts():
+            part.check(n, newest)

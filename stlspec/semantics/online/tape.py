@@ -5,14 +5,16 @@ needed are cut off when they are as many as the others, so that a sample costs c
 """
 
 from array import array
+from bisect import bisect_left
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stlspec.compiler.ir import PAST
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.saving import Remembering, Unsound, column, items, times, whole
+from stlspec.semantics.online.saving import Remembering, State, Unsound, column, items, times, whole
 
 _SMALL = 64
 
@@ -20,10 +22,12 @@ _SMALL = 64
 class Tape(Remembering):
     """Rows from sample number `base` on: `times` in ticks and one column for each formula."""
 
-    __slots__ = ("base", "columns", "times")
-    STATE = {"base": whole, "times": times, "columns": lambda value: [column(x) for x in items(value)]}
+    __slots__ = ("_width", "base", "columns", "times")
+    STATE: ClassVar[State] = {"base": whole, "times": times, "columns": lambda value: [column(x) for x in items(value)]}
+    TIMED: ClassVar[tuple[str, ...]] = ("times",)
 
     def __init__(self, width: int) -> None:
+        self._width = width
         self.base = 0
         self.times = array("q")
         self.columns = [array("d") for _ in range(width)]
@@ -34,27 +38,37 @@ class Tape(Remembering):
         for kept, value in zip(self.columns, values, strict=True):
             kept.append(value)
 
+    def needed(self, first: int, reach: int | None) -> int:
+        """Return the first sample that is looked at from sample number `first` on, `reach` ticks back."""
+        if reach is None:
+            return self.base
+        kept = first - self.base
+        # The newest sample is looked at too, should it be the only one.
+        kept = min(kept, len(self.times) - 1)
+        return self.base + bisect_left(self.times, self.times[kept] - reach, 0, kept)
+
     def drop(self, first: int, reach: int | None) -> None:
-        """Forget samples that are more than `reach` ticks before sample number `first`; None: keep all."""
+        """Forget samples that nothing looks at from sample number `first` on; reach: None keeps all."""
         if reach is None or first - self.base < max(_SMALL, len(self.times) // 2):
             return
-        kept = min(first - self.base, len(self.times) - 1)
-        # Samples are at least one tick apart, so none within reach lies before this one.
-        earliest = self.times[kept] - reach
-        while kept > 0 and self.times[kept - 1] >= earliest:
-            kept -= 1
+        kept = self.needed(first, reach) - self.base
         if kept >= _SMALL:
             self.base += kept
             del self.times[:kept]
             for values in self.columns:
                 del values[:kept]
 
-    def arrays(self) -> tuple[NDArray[np.int64], list[NDArray[np.float64]]]:
-        """Return copies: (n_samples,) times and columns."""
-        return np.array(self.times, dtype=np.int64), [np.array(c, dtype=np.float64) for c in self.columns]
+    def arrays(self, first: int) -> tuple[NDArray[np.int64], list[NDArray[np.float64]]]:
+        """Return copies from sample number `first` on: (n_samples,) times and columns."""
+        row = first - self.base
+        # A view would forbid the tape to grow for as long as somebody holds it.
+        columns = [np.frombuffer(c, dtype=np.float64)[row:].copy() for c in self.columns]
+        return np.frombuffer(self.times, dtype=np.int64)[row:].copy(), columns
 
-    def check(self) -> None:
-        if self.base < 0 or any(len(c) != len(self.times) for c in self.columns):
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        if self.base < 0 or len(self.columns) != self._width or any(len(c) != len(self.times) for c in self.columns):
             raise Unsound("columns are of unequal length")
 
 

@@ -1,0 +1,176 @@
+"""Complete traces: one, many, long; windows short and wide; time beside other tools, and in passes over memory.
+
+A pass is one `np.minimum(a, b, out=c)` over the same samples, the yardstick of what memory allows. Peers get
+their data in their own form, ready; stlspec gets arrays (or lists) and is timed by whole calls of
+`bundle.evaluate`, validation and packaging included.
+"""
+
+import numpy as np
+
+from tests.benchmarks.table import Goal, Row, Section
+from tests.benchmarks.workloads import EIGHT, P, Q
+
+
+def ratio(figures, other, own="stlspec"):
+    """How many times faster the own figure is than another; None if one is missing."""
+    a, b = figures[other].median, figures[own].median
+    return a / b if a and b else None
+
+
+def agreement(figures):
+    """Note for each contestant whether its value at sample 0 is the one of stlspec."""
+    own = figures["stlspec"].values
+    return {
+        label: "" if not figure.values or figure.values == own else "other values: see README"
+        for label, figure in figures.items()
+    }
+
+
+def windows(arena, data):
+    """One trace, always over 1001 samples, from arrays and from lists."""
+    n, formula = 100_000, [["G", [0, 1000], P]]
+
+    def job(tool, size=n, **more):
+        return data.job(tool, "trace", formula, data.short, size, **more)
+
+    figures = arena.contest(
+        {
+            "stlspec": job("stlspec"),
+            "stlspec, and .signal of it": job("stlspec", signal=True),
+            "stlspec, from lists": job("stlspec", lists=True),
+            "mstlo": job("mstlo"),
+            "mstlo, pairs ready, nothing taken out": job("mstlo", ready=True),
+            "stlrom, all samples, loaded": _whole(data, "stlrom", formula[0], n),
+            "reelay (past)": job("reelay"),
+            "moonlight": job("moonlight"),
+            "rtamt (n = 10,000)": job("rtamt", 10_000),
+        }
+    )
+    section = Section("always[0, 1000], one trace, n = 100,000")
+    notes = agreement(figures) | {"stlrom, all samples, loaded": "one value: eventually always[0, 1000]"}
+    section.contest(figures, notes=notes)
+    section.goals = [
+        Goal("times faster than mstlo, arrays", ratio(figures, "mstlo"), 100),
+        Goal("times faster than RTAMT, arrays", ratio(figures, "rtamt (n = 10,000)"), 1000),
+        Goal("times faster than mstlo, lists", ratio(figures, "mstlo", "stlspec, from lists"), 15),
+    ]
+    return section
+
+
+def _whole(data, tool, formula, n):
+    """Make a tool that gives one value look at every sample."""
+    op = "F" if formula[0] == "G" else "G"
+    return data.job(tool, "trace", [[op, [0, n], formula]], data.short, n)
+
+
+def until(arena, data):
+    """Timed until, w = 10 and 1000: one trace, and a batch of 1000 x 1000."""
+    sections = []
+    own = {}
+    for w in (10, 1000):
+        n, formula = 100_000, ["U", [0, w], P, Q]
+        jobs = {
+            "stlspec": data.job("stlspec", "trace", [formula], data.short, n),
+            "stlrom, value at 0, loaded": data.job("stlrom", "trace", [formula], data.short, n),
+            "stlrom, all samples, loaded": _whole(data, "stlrom", formula, n),
+            "mstlo": data.job("mstlo", "trace", [formula], data.short, 100_000 if w == 10 else 20_000),
+            "moonlight": data.job("moonlight", "trace", [formula], data.short, n),
+        }
+        if w == 10:
+            jobs["rtamt (n = 10,000)"] = data.job("rtamt", "trace", [formula], data.short, 10_000)
+        figures = arena.contest(jobs)
+        section = Section(f"until[0, {w}], one trace, n = 100,000")
+        section.contest(figures, notes=agreement(figures) | {"stlrom, all samples, loaded": "one value: always until"})
+        level = ratio(figures, "stlrom, value at 0, loaded")
+        section.goals = [Goal("times faster than STLRom's value at sample 0", level, 1)]
+        own[w] = figures["stlspec"].median
+        sections.append(section)
+    sections[-1].goals.append(Goal("w = 1000 over w = 10", own[1000] / own[10], 4, at_least=False))
+    traces = 50 if arena.quick else 200
+    formula = [["U", [0, 100], P, Q]]
+    figures = arena.contest(
+        {
+            "stlspec": data.job("stlspec", "batch", formula, data.batch, 1000),
+            "stlrom, loaded": data.job("stlrom", "batch", formula, data.batch, 1000, traces=traces),
+            "stlrom, loading": data.job("stlrom", "loading", formula, data.batch, 1000, traces=traces),
+            "mstlo": data.job("mstlo", "batch", formula, data.batch, 1000, traces=20),
+        }
+    )
+    section = Section("until[0, 100], 1000 traces x 1000 samples")
+    section.contest(figures, notes=agreement(figures))
+    section.goals = [Goal("times faster than STLRom, samples loaded before", ratio(figures, "stlrom, loaded"), 5)]
+    return [*sections, section]
+
+
+def batch(arena, data):
+    """The whole spec of eight requirements over 1000 x 1000 samples."""
+    few = 5 if arena.quick else 20
+
+    def job(tool, kind="batch", traces=few):
+        return data.job(tool, kind, EIGHT, data.batch, 1000, traces=traces)
+
+    figures = arena.contest(
+        {
+            "stlspec": job("stlspec"),
+            "stlrom, loaded": job("stlrom", traces=10 * few),
+            "stlrom, loading": job("stlrom", "loading", traces=10 * few),
+            "mstlo": job("mstlo"),
+            "moonlight": job("moonlight"),
+            "rtamt": job("rtamt", traces=1),
+        }
+    )
+    section = Section("8 requirements that share sub-formulas, 1000 traces x 1000 samples")
+    section.contest(figures, notes=agreement(figures))
+    best = min((f.median for label, f in figures.items() if label not in _OWN and f.median), default=None)
+    own = figures["stlspec"].median
+    section.goals = [
+        Goal("M samples/s for the whole spec", 1e-6 / own if own else None, 16),
+        Goal("times faster than the best, its samples taken in by the call", best / own if best and own else None, 70),
+    ]
+    return section
+
+
+_OWN = ("stlspec", "stlrom, loaded")
+
+
+def passes(arena, data):
+    """One always in passes over memory: n from 1e4 to 1e7, w from 10 to 10,000."""
+    section = Section("always[0, w], one trace, in passes of np.minimum over the same n")
+    sizes = (10**4, 10**5, 10**6) if arena.quick else (10**4, 10**5, 10**6, 10**7)
+    seconds = {}
+    for n in sizes:
+        taken, counted = _in_passes(arena, data, n, 1000, section)
+        seconds[n] = taken * n
+        if n == 10**6:
+            section.goals.append(Goal("passes at n = 1e6, w = 1000", counted, 8, at_least=False))
+    large = [n for n in sizes if n >= 10**5]
+    slope = np.polyfit(np.log([float(n) for n in large]), np.log([seconds[n] for n in large]), 1)[0]
+    section.notes.append(f"time grows with n to the power of {slope:.2f} (from n = 1e5 on)")
+    widths = {w: _in_passes(arena, data, 10**6, w, section)[0] for w in (10, 100, 10_000)}
+    widths[1000] = seconds[10**6] / 10**6
+    spread = max(widths.values()) / min(widths.values())
+    section.goals.append(Goal("slowest over fastest w, 10 to 10,000, n = 1e6", spread, 4, at_least=False))
+    return section
+
+
+def _in_passes(arena, data, n, w, section):
+    """Add a row; return seconds a sample and the number of passes."""
+    figures = arena.contest(
+        {
+            "evaluate": data.job("stlspec", "trace", [["G", [0, w], P]], data.long, n),
+            "pass": data.job("stlspec", "minimum", [], data.long, n),
+        }
+    )
+    counted = ratio(figures, "evaluate", "pass")
+    note = f"{counted:.1f} passes (a pass: {1e-6 / figures['pass'].median:.4g} M samples/s)"
+    section.rows.append(Row(f"n = {n:.0e}, w = {w}", figures["evaluate"], note=note))
+    return figures["evaluate"].median, counted
+
+
+def memory(arena, data):
+    """What one call allocates at its peak, eight requirements, n = 1e6."""
+    n = 10**6
+    section = Section("peak memory of one call, 8 requirements, n = 1e6, in arrays of n doubles")
+    peak, kept = arena.values(*data.job("stlspec", "memory", EIGHT, data.long, n))
+    section.notes = [f"peak {peak:.1f}, of which {kept:.1f} are in the result (8 of them the values at every sample)"]
+    return section
