@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 _ENDINGS = (".stl", ".stlspec", ".stlb")
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Bundle(BundleData):
-    """A compiled spec: immutable, safe to share between threads, equal where the meaning and the text are."""
+    """A compiled spec: immutable, safe to share between threads, equal where meaning and text are."""
 
     @cached_property
     def meaning_sha256(self) -> str:
@@ -40,6 +40,15 @@ class Bundle(BundleData):
     def source_sha256(self) -> str:
         """The hash of the text that the spec was compiled from."""
         return bundle_file.source_sha256(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare by the two hashes: file names do not count."""
+        if not isinstance(other, Bundle):
+            return NotImplemented
+        return (self.meaning_sha256, self.source_sha256) == (other.meaning_sha256, other.source_sha256)
+
+    def __hash__(self) -> int:
+        return hash((self.meaning_sha256, self.source_sha256))
 
     def evaluate(
         self, signals: Mapping[str, Any], time: Any = None, end: str = "clip", at: int = 0, algebra: Algebra = MIN_MAX

@@ -11,11 +11,11 @@ import numpy as np
 
 from stlspec.api import Bundle, publish
 from stlspec.compiler.checks import check, names_in
+from stlspec.compiler.compiling import compile_syntax
 from stlspec.compiler.inference import FUNCTIONS, NOW
-from stlspec.compiler.lower import lower
 from stlspec.demos import Demonstration, OnNan, bind
 from stlspec.errors import SpecError, UsageError, diagnostic
-from stlspec.lang.nodes import Name, RequirementStatement, SignalStatement, Statement
+from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement
 from stlspec.lang.parse import Syntax, parse, parse_formula
 from stlspec.semantics.evaluation import End, RequirementResult, evaluate
 from stlspec.source import SourceText, Span
@@ -40,21 +40,17 @@ def compile_formula(
     Raises: SpecError: the formula has errors. UsageError: `time` or a param cannot be read.
     """
     source = SourceText.of("<formula>", text)
-    values = _numbers(params or {})
+    values = dict(params or {})
     words = frozenset(_words(text))
     formula, problems = parse_formula(source, words & (booleans | values.keys()))
     if formula is None or problems:
         raise SpecError(problems)
-    used = dict.fromkeys(n for n in names_in(formula) if n not in NOW and n not in values and n not in FUNCTIONS)
-    statements = _time(time) + [_signal(name, name in booleans) for name in used]
-    statements += [s for n, v in values.items() for s in parse(_text(f"param {n} = {v!r}")).statements]
-    requirement = RequirementStatement(formula.span, "hard", Name(_NOWHERE, _NAME), None, (), None, None, formula)
-    syntax = Syntax(source, (*statements, requirement), (), (), words, frozenset({_NAME}))
-    model, diagnostics = check(syntax)
-    errors = [d for d in diagnostics if d.severity == "error"]
-    if errors:
-        raise SpecError(errors)
-    return publish(lower(model))
+    used = dict.fromkeys(names_in(formula))
+    signals = [name for name in used if name not in {*NOW, *FUNCTIONS, *values}]
+    statements: list[Statement] = [*_time(time), *(_signal(name, name in booleans) for name in signals)]
+    statements += [ParamStatement(_NOWHERE, Name(_NOWHERE, name), None, None) for name in values if name in used]
+    statements.append(RequirementStatement(formula.span, "hard", Name(_NOWHERE, _NAME), None, (), None, None, formula))
+    return publish(compile_syntax(Syntax(source, tuple(statements), (), (), words, frozenset({_NAME})), values))
 
 
 def evaluate_on(
@@ -82,10 +78,6 @@ def evaluate_on(
     return tuple(results)
 
 
-def _text(text: str) -> SourceText:
-    return SourceText.of("<command line>", text)
-
-
 def _words(text: str) -> list[str]:
     return "".join(c if c.isalnum() or c == "_" else " " for c in text).split()
 
@@ -95,22 +87,10 @@ def _signal(name: str, boolean: bool) -> Statement:
     return SignalStatement(_NOWHERE, Name(_NOWHERE, name), kind, None, None, None, None)
 
 
-def _time(time: str) -> list[Statement]:
-    syntax = parse(_text(f"time {time}"))
-    if syntax.diagnostics:
-        what = f"`--time {time}` is no way to measure time"
+def _time(time: str) -> tuple[Statement, ...]:
+    syntax = parse(SourceText.of("<command line>", f"time {time}"))
+    _, problems = check(syntax)
+    if problems or len(syntax.statements) != 1:
+        what = f"`--time {time[:30]}` is no way to measure time"
         raise UsageError([diagnostic("D880", what=what, help="write --time step, --time s or --time '100 ms'")])
-    return list(syntax.statements)
-
-
-def _numbers(params: Mapping[str, str]) -> dict[str, float]:
-    values = {}
-    for name, text in params.items():
-        try:
-            values[name] = float(text)
-        except ValueError:
-            problem = diagnostic("N108", file="-p", name=name, value=text[:30], problem="it is not a number")
-            raise UsageError([problem]) from None
-        if not name.isidentifier() or values[name] != values[name] or abs(values[name]) == float("inf"):
-            raise UsageError([diagnostic("N108", file="-p", name=name, value=text[:30], problem="it is not a number")])
-    return values
+    return syntax.statements

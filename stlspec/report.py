@@ -27,7 +27,7 @@ from stlspec.rewards import RewardMap
 from stlspec.scores import DemonstrationScore, Ranking, moment, number
 
 Progress = Callable[[int, int, int], None]
-_WIDTH_OF_FILES = 200
+_WIDTH_OF_FILES = 10_000
 _STYLES = {"good": "green", "incomplete": "yellow", "bad": "red", "satisfied": "green", "violated": "red"}
 _MARKS = {"satisfied": "✓", "violated": "✗", "undecided": "?"}
 
@@ -108,7 +108,7 @@ def _print_reasons(ranking: Ranking, console: Console) -> None:
         for line in lines:
             console.print(Text(line))
     if vacuous:
-        console.print(Text("\n∅ decided by no sample: the trace ends before the window; it counts 0 in the reward"))
+        console.print(Text("\n∅ decided by no sample, since none lies in the window; it counts 0 in the reward"))
 
 
 def ranking_csv(ranking: Ranking) -> str:

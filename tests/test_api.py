@@ -54,7 +54,8 @@ def test_a_bundle_survives_file_and_pickle(tmp_path: Path) -> None:
     bundle = stlspec.compile(TEXT)
     bundle.save(tmp_path / "x.stlb")
     for copy in (stlspec.load(tmp_path / "x.stlb"), pickle.loads(pickle.dumps(bundle))):
-        assert copy.meaning_sha256 == bundle.meaning_sha256
+        assert copy == bundle
+        assert hash(copy) == hash(bundle)
         assert copy.evaluate({"x": [5]})["up"].robustness == 4.0
 
 

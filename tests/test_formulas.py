@@ -3,7 +3,7 @@
 import pytest
 
 from stlspec.demos import load_demonstrations
-from stlspec.errors import SpecError, UsageError
+from stlspec.errors import InputError, SpecError, UsageError
 from stlspec.formulas import compile_formula, evaluate_on
 
 
@@ -23,8 +23,13 @@ def test_a_column_called_like_an_operator_is_an_operator_unless_it_is_boolean(tm
 def test_time_is_read_as_in_a_spec() -> None:
     bundle = compile_formula("F[0, 1 s] x > 0", frozenset(), "250 ms")
     assert bundle.horizon == 1_000_000_000
-    with pytest.raises(UsageError, match="--time"):
-        compile_formula("x > 0", frozenset(), "( soon")
+    for wrong in ("( soon", "abc", "125 m", "0 s", "s\nsignal x"):
+        with pytest.raises(UsageError, match="--time"):
+            compile_formula("x > 0", frozenset(), wrong)
+
+
+def test_a_param_may_be_a_bound_with_a_time_unit() -> None:
+    assert compile_formula("F[0, T] x > 0", frozenset(), "s", {"T": "12s"}).horizon == 12 * 10**9
 
 
 @pytest.mark.parametrize("text", ["", "always x", "always (x > 0", "x > > 1", "x = 1"])
@@ -33,7 +38,7 @@ def test_a_wrong_formula_is_a_spec_error(text: str) -> None:
         compile_formula(text, frozenset())
 
 
-@pytest.mark.parametrize(("name", "value"), [("c", "soon"), ("c", "nan"), ("2c", "1")])
+@pytest.mark.parametrize(("name", "value"), [("c", "soon"), ("c", "nan"), ("c", "1e999")])
 def test_a_param_that_is_no_number_is_refused(name: str, value: str) -> None:
-    with pytest.raises(UsageError, match="N108"):
-        compile_formula("x > 0", frozenset(), "step", {name: value})
+    with pytest.raises(InputError, match="N108"):
+        compile_formula("x > c", frozenset(), "step", {name: value})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
-from stlspec.cli.output import Format, ScoreFormat, print_json, warn
+from stlspec.cli.output import Format, ScoreFormat, counted, print_json, warn
 from stlspec.errors import GateError, UsageError, diagnostic
 
 if TYPE_CHECKING:
@@ -60,12 +60,14 @@ DemoEnv = Annotated[str | None, typer.Option("--demo-env", metavar="ID", help="t
 DemoMap = Annotated[Path | None, typer.Option("--demo-map", metavar="FILE", help="the map of the demonstrations")]
 
 
-def environment_from(env: str | None, args: list[str] | None, map_file: Path | None) -> "Environment | None":
+def environment_from(
+    env: str | None, args: list[str] | None, map_file: Path | None, map_option: str = "--map"
+) -> "Environment | None":
     """Make the environment that the options describe; None if they describe none."""
     from stlspec.envs.catalogue import make_environment, parse_env_args, read_map
 
     if env is None:
-        for option, given in (("--env-arg", args), ("--map", map_file)):
+        for option, given in (("--env-arg", args), (map_option, map_file)):
             if given:
                 what = f"`{option}` needs an environment"
                 raise UsageError([diagnostic("D880", what=what, help="name one with `--env ID`")])
@@ -86,7 +88,7 @@ def demonstration_environment(
         return None
     other = demo_env is not None and demo_env != env
     rows = demo_map if demo_map is not None or other else map_file
-    return environment_from(demo_env or env, None if other else args, rows)
+    return environment_from(demo_env or env, None if other else args, rows, "--demo-map")
 
 
 def score(
@@ -137,7 +139,10 @@ def score(
         report.print_ranking(ranking, sys.stdout)
         if explain:
             _print_explanations(ranking, explanations)
-    if require is not None and not _passes(ranking, require):
+    failed = _failed(ranking, require) if require is not None else 0
+    if failed:
+        what = f"{failed} of {counted(len(ranking.demonstrations), 'demonstration')} failed `--require {require}`"
+        warn([diagnostic("D881", what=what, help="the result above says why")])
         raise typer.Exit(GateError.exit_code)
 
 
@@ -188,11 +193,11 @@ def _plotter(out: Path, n_demonstrations: int) -> "Callable[[Bundle, Ranking, li
     return draw
 
 
-def _passes(ranking: "Ranking", gate: Gate) -> bool:
-    """Tell whether every demonstration satisfies the requirements that the gate names."""
+def _failed(ranking: "Ranking", gate: Gate) -> int:
+    """Count the demonstrations that do not satisfy the requirements that the gate names."""
     named = [name for name, strength, _, _ in ranking.requirements if gate is Gate.ALL or strength == "hard"]
-    return all(
-        d.requirements[name].result.verdict.value == "satisfied" for d in ranking.demonstrations for name in named
+    return sum(
+        any(d.requirements[name].result.verdict.value != "satisfied" for name in named) for d in ranking.demonstrations
     )
 
 

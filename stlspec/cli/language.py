@@ -47,7 +47,7 @@ def check(
 def _checked(path: Path, values: dict[str, str]) -> tuple[Diagnostic, ...]:
     data = files.read_bytes(path, bundle_file.LARGEST)
     if files.looks_like_bundle(path, data):
-        bundle_file.load(data, str(path))
+        files.read_spec(path, values)
         return ()
     return check_source(files.decode(data, str(path)), values).diagnostics
 

@@ -62,9 +62,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # signs such as ✓ where the terminal has ASCII only
     try:
-        result = typer.main.get_command(build()).main(
-            args=expand_many(words or ["--help"]), prog_name="stlspec", standalone_mode=False
-        )
+        # Not `command.main`: it turns Ctrl-C and a closed pipe into exits of its own.
+        command = typer.main.get_command(build())
+        with command.make_context("stlspec", expand_many(words or ["--help"])) as context:
+            command.invoke(context)
         sys.stdout.flush()
     except StlspecError as error:
         return _fail(words, error.exit_code, error.diagnostics)
@@ -87,7 +88,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return stop.exit_code
     except Exception as error:
         return _unexpected(words, error)
-    return result if isinstance(result, int) else 0
+    return 0
 
 
 def _silence_stdout() -> None:

@@ -55,8 +55,8 @@ def coloured(stream: TextIO) -> bool:
 
 
 def print_json(document: Any) -> None:
-    """Print one JSON document on stdout."""
-    print(json.dumps(document, ensure_ascii=False, allow_nan=False, indent=2))
+    """Print one JSON document on stdout, in ASCII, which every terminal and every pipe can carry."""
+    print(json.dumps(document, allow_nan=False, indent=2))
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: TextIO) -> None:

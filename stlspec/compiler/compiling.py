@@ -15,7 +15,7 @@ from stlspec.compiler.checks import check
 from stlspec.compiler.lower import lower
 from stlspec.compiler.model import Binding, Model
 from stlspec.errors import Diagnostic, InputError, SpecError, diagnostic
-from stlspec.lang.parse import parse
+from stlspec.lang.parse import Syntax, parse
 from stlspec.lang.spelling import closest
 from stlspec.lang.units import NANOSECONDS, STEP
 from stlspec.source import SourceText
@@ -44,7 +44,10 @@ def check_source(source: SourceText, params: Mapping[str, float | str] | None = 
 
     Raises: InputError: a given param does not exist or its value cannot be read.
     """
-    syntax = parse(source)
+    return _check(parse(source), params)
+
+
+def _check(syntax: Syntax, params: Mapping[str, float | str] | None) -> CheckResult:
     model, diagnostics = check(syntax)
     if params:
         model, diagnostics = check(syntax, _bind(model, params))
@@ -57,7 +60,13 @@ def compile_source(source: SourceText, params: Mapping[str, float | str] | None 
     Args:    params: values by name; a number is in the declared unit, a text such as "12s" is converted.
     Raises: SpecError: the text has errors. InputError: a param has no value, does not exist, or cannot be read.
     """
-    result = check_source(source, params)
+    return compile_syntax(parse(source), params)
+
+
+def compile_syntax(syntax: Syntax, params: Mapping[str, float | str] | None = None) -> BundleData:
+    """Compile statements that are parsed, or made by a program; see `compile_source`."""
+    source = syntax.source
+    result = _check(syntax, params)
     if result.errors:
         raise SpecError(result.errors)
     model = result.model

@@ -6,8 +6,8 @@ binary data, a folder) is refused before anything is parsed; writing is atomic.
 
 import errno
 import os
+import secrets
 import struct
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -53,16 +53,17 @@ def write_bytes(path: str | Path, data: bytes) -> None:
             return
         if target.exists() and not os.access(target, os.W_OK):
             raise PermissionError(errno.EACCES, "permission denied")
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        mode = target.stat().st_mode & 0o777 if target.exists() else None
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
+        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
         with os.fdopen(handle, "wb") as file:
             file.write(data)
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(temporary).chmod(0o666 & ~umask)
-        Path(temporary).replace(target)
+        if mode is not None:
+            temporary.chmod(mode)
+        temporary.replace(target)
     except OSError as error:
         if temporary is not None:
-            Path(temporary).unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
         problem = (error.strerror or str(error)).lower()
         way = "check that its folder exists and can be written"
         raise InputError([diagnostic("S092", file=str(path), verb="write", problem=problem, help=way)]) from None

@@ -74,9 +74,15 @@ def test_csv_has_a_row_for_each_requirement(files: list[str], capsys: pytest.Cap
     ],
 )
 def test_a_gate_turns_a_failure_into_exit_1(
-    files: list[str], which: int, gate: str, params: list[str], expected: int
+    files: list[str],
+    which: int,
+    gate: str,
+    params: list[str],
+    expected: int,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert run(["score", GRID, files[which], "--require", gate, *params]) == expected
+    assert ("1 of 1 demonstration failed" in capsys.readouterr().err) == bool(expected)
 
 
 def test_strict_refuses_what_ends_before_the_horizon(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:

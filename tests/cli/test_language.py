@@ -69,6 +69,8 @@ def test_compile_writes_the_same_bytes_twice_and_bundles_work_where_specs_do(
     assert capsys.readouterr().out == from_bundle
     assert run(["graph", str(one), "-p", "T_goal=3"]) == 2
     assert "B705" in capsys.readouterr().err
+    assert run(["check", str(one), "-p", "T_goal=3"]) == 2
+    assert "B705" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

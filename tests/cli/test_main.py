@@ -158,13 +158,18 @@ def test_ctrl_c_ends_with_130(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
 
     monkeypatch.setattr(data, "environment_from", interrupted)
     assert outcome(["score", LAKE, LAKE_DEMOS], capsys)[0] == 130
+    code, out, err = outcome(["score", LAKE, LAKE_DEMOS, "--format", "json"], capsys)
+    assert (code, err) == (130, "interrupted\n")
+    assert json.loads(out) == {"schema": "stlspec.error/1", "exit": 130, "diagnostics": []}
 
 
-def test_a_closed_pipe_is_no_error() -> None:
-    command = f"{sys.executable} -m stlspec explain | head -1"
+def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
+    many = tmp_path / "many.jsonl"
+    many.write_text(Path(LAKE_DEMOS).read_text() * 400)
+    words = f"{sys.executable} -m stlspec score {LAKE} {many} --format json"
+    command = f"{words} | head -1; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
-    assert done.stdout.startswith("S001")
-    assert done.stderr == ""
+    assert (done.returncode, done.stdout, done.stderr) == (0, "{\n", "")
 
 
 def test_the_version_and_the_help_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
