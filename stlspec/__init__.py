@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from stlspec.learning import Outcome, Policy, learn, load_policy
     from stlspec.rewards import RewardMap, infer_reward, load_reward
     from stlspec.scores import Ranking, score
+    from stlspec.semantics.algebra import BOOLEAN, MIN_MAX, Algebra, log_sum_exp
     from stlspec.semantics.evaluation import Evaluation, Verdict, Witness
+    from stlspec.semantics.explain import Explanation
+    from stlspec.semantics.online import Monitor
 
 __version__ = "0.1.0"
 
@@ -38,6 +41,7 @@ _HOMES = {
         "Diagnostic",
         "GateError",
         "InputError",
+    "Monitor",
         "SpecError",
         "StlspecError",
         "UsageError",
@@ -45,19 +49,27 @@ _HOMES = {
     "stlspec.learning": ("Outcome", "Policy", "learn", "load_policy"),
     "stlspec.rewards": ("RewardMap", "infer_reward", "load_reward"),
     "stlspec.scores": ("Ranking", "score"),
+    "stlspec.semantics.algebra": ("BOOLEAN", "MIN_MAX", "Algebra", "log_sum_exp"),
     "stlspec.semantics.evaluation": ("Evaluation", "Verdict", "Witness"),
+    "stlspec.semantics.explain": ("Explanation",),
+    "stlspec.semantics.online": ("Monitor",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "BOOLEAN",
+    "MIN_MAX",
+    "Algebra",
     "Bundle",
     "BundleError",
     "DataError",
     "Demonstration",
     "Diagnostic",
     "Evaluation",
+    "Explanation",
     "GateError",
     "InputError",
+    "Monitor",
     "Outcome",
     "Policy",
     "Ranking",
@@ -75,6 +87,7 @@ __all__ = [
     "load_demonstrations",
     "load_policy",
     "load_reward",
+    "log_sum_exp",
     "make_environment",
     "score",
 ]

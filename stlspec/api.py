@@ -10,14 +10,22 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from stlspec.compiler import bundle_file, files
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.compiling import compile_source
 from stlspec.compiler.graph import to_networkx
 from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.algebra import MIN_MAX, Algebra
-from stlspec.semantics.evaluation import Evaluation, evaluate
+from stlspec.semantics.ending import evaluate_ending
+from stlspec.semantics.evaluation import Evaluation, RequirementResult
+from stlspec.semantics.explain import Explanation, explain, named_values
 from stlspec.semantics.gradients import gradient
+from stlspec.semantics.online import Monitor, make_monitor
+from stlspec.semantics.online.monitor import Reading
+from stlspec.semantics.online.plan import Ends
 from stlspec.source import SourceText
 
 if TYPE_CHECKING:
@@ -59,14 +67,15 @@ class Bundle(BundleData):
 
         Args:    signals: by name; each (n_samples,), or (n_traces, n_samples), or a list of arrays.
                  time: stamps of the same shape, in the spec's unit; None where samples are counted or periodic.
-                 end: "clip" (a trace is a complete episode) or "strict" (it must reach the horizon).
+                 end: "clip" (a trace is a complete episode), "strict" (it must reach the horizon) or "interval"
+                 (it may go on: one trace, with `low` and `high`, and a verdict that may be undecided).
                  at: the sample whose value is wanted; negative counts from the end.
                  algebra: of `robustness` and `signal`; verdicts and witnesses are those of min/max in any.
         Returns: for each requirement robustness, verdict, witness, and its value at every sample.
         Raises:  DataError: a signal is missing, NaN, of another length, ...
                  UsageError: `end`, `at` or `algebra` is wrong.
         """
-        return evaluate(self, signals, time, end=end, at=at, algebra=algebra)
+        return evaluate_ending(self, signals, time, end=end, at=at, algebra=algebra)
 
     def gradient(
         self,
@@ -83,6 +92,25 @@ class Bundle(BundleData):
         Raises:  DataError: as `evaluate`. UsageError: no such requirement, or an algebra without slopes.
         """
         return gradient(self, signals, time, requirement, algebra)
+
+    def monitor(self, reading: Reading = "start", ends: Ends = "any") -> Monitor:
+        """Make a monitor: samples go in one by one, what is known of each requirement comes out.
+
+        Not in the paper: it evaluates complete traces only.
+
+        Args:    reading: "start" follows the value at sample 0, "every" gives the value at each sample once known.
+                 ends: "any", or "horizon" if the trace is promised to reach the horizon.
+        Raises:  UsageError: the reading or the end is unknown.
+        """
+        return make_monitor(self, reading, ends)
+
+    def explain(self, requirement: str, result: RequirementResult) -> Explanation:
+        """Say which sub-formula, sample and signals decide a result of `evaluate`, and what would turn it."""
+        return explain(self, requirement, result)
+
+    def named_values(self, signals: Mapping[str, Any], time: Any = None) -> Mapping[str, NDArray[np.float64]]:
+        """Return the value of every `let` that a requirement uses, at every sample of one trace or batch."""
+        return named_values(self, signals, time)
 
     def to_networkx(self) -> "nx.DiGraph":
         """Return the DAG of requirements, edges from prerequisite to dependant, weights on the nodes."""

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +21,11 @@ import numpy.typing as npt
 from stlspec.compiler.bundle import BundleData, Signal
 from stlspec.envs.catalogue import environment_of
 from stlspec.envs.model import Environment
-from stlspec.errors import DataError, Diagnostic, InputError, diagnostic
+from stlspec.errors import DataError, Diagnostic, InputError, UsageError, diagnostic
 from stlspec.readers.document import SCHEMA
-from stlspec.readers.model import Array, Recording, checked, column_of
+from stlspec.readers.model import Array, Recording, checked, column_of, time_of
 from stlspec.readers.registry import read_recordings
+from stlspec.traces import unmasked, whole_stamps
 
 OnNan: TypeAlias = Literal["refuse", "hold", "drop"]
 
@@ -114,7 +115,7 @@ def make_demonstration(
     """
     recording = Recording(
         name=name,
-        time=None if time is None else _column(time),
+        time=None if time is None else _stamps(time),
         columns={key: _column(values) for key, values in (signals or {}).items()},
         states=None if states is None else tuple(states),
         actions=None if actions is None else tuple(actions),
@@ -169,11 +170,14 @@ def bind(
     Args: environment: computes what is missing, where the demonstration names no environment of its own, or
         where that one does not offer the signal. on_nan: "refuse" leaves NaN in place, so that the evaluation
         refuses it; "hold" repeats the previous value; "drop" leaves out the sample.
-    Raises: DataError D803, D804, D827, D841; InputError: the demonstration's own environment is unknown.
+    Raises: DataError D803, D804, D827, D841; InputError: the demonstration's own environment is unknown;
+        UsageError D880: `on_nan` is none of the three.
     """
+    _check_word(on_nan)
     file = demonstration.file or demonstration.name
     own, failure = _own_environment(demonstration.recording, file)
-    worlds = tuple(world for world in (own, environment) if world is not None)
+    # States of an environment that cannot be made mean nothing in another one.
+    worlds = () if failure else tuple(world for world in (own, environment) if world is not None)
     home = worlds[0] if worlds else None
     used = _used(bundle)
     recording = _with_paths(demonstration.recording, used, file)
@@ -196,6 +200,14 @@ def bind(
         actions=recording.actions,
         environment=home,
     )
+
+
+def _check_word(on_nan: str) -> None:
+    words = get_args(OnNan)
+    if on_nan not in words:
+        close = difflib.get_close_matches(str(on_nan).lower(), words, 1)
+        hint = f"did you mean '{close[0]}'?" if close else f"it is one of {', '.join(words)}"
+        raise UsageError([diagnostic("D880", what=f"on_nan = {_shown(on_nan)} is no way to treat NaN", help=hint)])
 
 
 def _used(bundle: BundleData) -> list[Signal]:
@@ -363,7 +375,16 @@ def _plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
+def _stamps(values: npt.ArrayLike) -> Array:
+    values = unmasked(values)
+    if not isinstance(values, np.ndarray):
+        return time_of(list(values))  # type: ignore[arg-type]
+    whole = whole_stamps(values)
+    return _column(values) if whole is None else whole
+
+
 def _column(values: npt.ArrayLike) -> Array:
+    values = unmasked(values)
     if isinstance(values, np.ndarray):
         return values.astype(np.float64) if values.dtype.kind in "iu" else values
     return column_of(list(values))  # type: ignore[arg-type]

@@ -17,7 +17,8 @@ from stlspec.demos import Demonstration, OnNan, bind
 from stlspec.errors import SpecError, UsageError, diagnostic
 from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement
 from stlspec.lang.parse import Syntax, parse, parse_formula
-from stlspec.semantics.evaluation import End, RequirementResult, evaluate
+from stlspec.semantics.ending import End, evaluate_ending
+from stlspec.semantics.evaluation import RequirementResult
 from stlspec.source import SourceText, Span
 
 _NAME = "formula"
@@ -73,7 +74,7 @@ def evaluate_on(
         booleans = frozenset(n for n, values in columns.items() if np.asarray(values).dtype == np.bool_)
         bundle = compile_formula(text, booleans, time, params)
         bound = bind(bundle, demonstration, None, on_nan)
-        found = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
+        found = evaluate_ending(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
         results.append(FormulaResult(bound.name, found[_NAME]))
     return tuple(results)
 

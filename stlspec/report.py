@@ -91,7 +91,10 @@ def _cell(row: DemonstrationScore, name: str) -> Text:
     result = row.requirements[name].result
     mark = _MARKS[result.verdict.value]
     vacuous = " ∅" if result.vacuous else ""
-    text = f"{mark} {shown_number(result.robustness)}{vacuous}"
+    value = shown_number(result.robustness)
+    if result.low is not None and result.low != result.high:
+        value = f"[{shown_number(result.low)}, {shown_number(result.high)}]"
+    text = f"{mark} {value}{vacuous}"
     return Text(text, _STYLES.get(result.verdict.value, ""))
 
 

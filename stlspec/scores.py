@@ -17,7 +17,8 @@ from stlspec.demos import BoundDemonstration, Demonstration, OnNan, bind
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, diagnostic
 from stlspec.lang.units import STEP
-from stlspec.semantics.evaluation import End, Evaluation, RequirementResult, Verdict, evaluate
+from stlspec.semantics.ending import End, evaluate_ending
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
 Label = Literal["good", "incomplete", "bad"]
 LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
@@ -182,7 +183,7 @@ def evaluate_demonstrations(
     for demonstration in demonstrations:
         bound = bind(bundle, demonstration, environment, on_nan)
         file = demonstration.file or demonstration.name
-        result = evaluate(bundle, bound.signals, bound.time, end=end, at=at, file=file)
+        result = evaluate_ending(bundle, bound.signals, bound.time, end=end, at=at, file=file)
         evaluated.append((bound, result))
     return evaluated
 

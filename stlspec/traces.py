@@ -24,6 +24,7 @@ Ints = NDArray[np.int64]
 
 # A window ends at most one trace length after its sample, so twice the longest trace must fit into int64.
 _LONGEST_TICKS = 2.0**62
+_INT64_MOST = np.iinfo(np.int64).max
 # Ticks of up to this many samples are kept for the next trace of the same length.
 _LONGEST_SHARED = 2**20
 _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
@@ -139,6 +140,30 @@ def make_trace(
     return trace
 
 
+def whole_stamps(values: ArrayLike) -> Ints | None:
+    """Return time stamps as int64 if all are whole numbers by their type that fit; else None.
+
+    Not in the paper: exactness of time.
+    """
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu" or (array.dtype == np.uint64 and array.max(initial=0) > _INT64_MOST):
+        return None
+    return array.astype(np.int64)
+
+
+def unmasked(values: Any) -> Any:
+    """Return samples with NaN where a masked array hides them, since a hidden value is no sample.
+
+    Not in the paper: an interface.
+    """
+    if isinstance(values, np.ma.MaskedArray):
+        kind = np.float64 if values.dtype.kind in "biuf" else object
+        return np.ma.filled(values.astype(kind), np.nan)
+    if isinstance(values, list | tuple) and values and not isinstance(values[0], int | float):
+        return [unmasked(row) if isinstance(row, np.ma.MaskedArray) else row for row in values]
+    return values
+
+
 def _frozen(values: NDArray[Any]) -> NDArray[Any]:
     values.flags.writeable = False
     return values
@@ -157,6 +182,7 @@ def _missing(name: str, signals: Mapping[str, ArrayLike], file: str | None) -> D
 
 def _column(name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()) -> Floats:
     """Convert the values of one signal to a fresh float64 array, time-major."""
+    values = unmasked(values)
     try:
         raw = np.asarray(values)
     except (ValueError, TypeError, OverflowError):
@@ -244,6 +270,7 @@ def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
         if base.kind == "stamps":
             raise _error("D810", file, unit=base.unit)
         return _even_ticks(n, base.period or 1), None
+    time = unmasked(time)
     stamps = _column("time", time, file)
     if stamps.ndim != 1:
         raise _error("D813", file, what="'time'", problem="has one row for each trace, but the signals do not")
@@ -255,8 +282,15 @@ def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
     if not kept.all():
         at = int((~kept).argmax())
         raise _error("D812", file, time=number_text(stamps[at]), sample=at)
-    rounded = np.rint(ticks).astype(np.int64)
-    _check_increasing(stamps if base.kind != "stamps" else rounded, stamps, file)
+    whole = whole_stamps(time)
+    if whole is None:
+        rounded = np.rint(ticks).astype(np.int64)
+    else:
+        # Nanoseconds since 1970 are beyond what float64 tells apart: whole stamps stay whole until here.
+        rounded = (whole - whole[0]) * base.ticks_per_unit
+        ticks = rounded.astype(np.float64)
+    given = stamps if whole is None else whole
+    _check_increasing(given if base.kind != "stamps" else rounded, given, file)
     if base.kind == "step":
         return _even_ticks(n, 1), None
     if base.kind == "period":
@@ -274,11 +308,11 @@ def _shared_ticks(n: int, period: int) -> Ints:
     return _frozen(np.arange(n, dtype=np.int64) * period)
 
 
-def _check_increasing(values: NDArray[Any], stamps: Floats, file: str | None) -> None:
+def _check_increasing(values: NDArray[Any], stamps: Floats | Ints, file: str | None) -> None:
     wrong = values[1:] <= values[:-1]
     if wrong.any():
         at = int(wrong.argmax()) + 1
-        previous, this = number_text(stamps[at - 1]), number_text(stamps[at])
+        previous, this = (str(s) if isinstance(s, int) else number_text(s) for s in stamps[at - 1 : at + 1].tolist())
         raise _error("D802", file, sample=at, time=this, previous=previous)
 
 

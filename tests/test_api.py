@@ -75,6 +75,18 @@ def test_one_path_of_demonstrations_needs_no_list() -> None:
     assert len(stlspec.load_demonstrations(path)) == len(stlspec.load_demonstrations([path])) == 4
 
 
+def test_the_methods_of_a_bundle_reach_monitor_explanation_gradient_and_named_values() -> None:
+    bundle = stlspec.compile("signal x\nlet up = x >= 1\nhard h: always up\n")
+    monitor = bundle.monitor()
+    assert monitor.update({"x": 3})["h"].current == 2.0
+    result = bundle.evaluate({"x": [3, 0]})["h"]
+    assert bundle.explain("h", result).requirement == "h"
+    assert bundle.gradient({"x": [3.0, 0.0]})["x"].tolist() == [0.0, 1.0]
+    assert bundle.named_values({"x": [3, 0]})["up"].tolist() == [2.0, -1.0]
+    smooth = bundle.evaluate({"x": [3, 0]}, algebra=stlspec.log_sum_exp(0.01))["h"]
+    assert smooth.robustness == pytest.approx(-1, abs=0.01)
+
+
 def test_the_graph_carries_weights() -> None:
     graph = stlspec.compile(TEXT).to_networkx()
     assert list(graph.edges) == [("up", "high")]

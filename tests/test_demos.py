@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.compiler.bundle import BundleData, Signal, TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.demos import (
@@ -376,3 +377,33 @@ def test_the_signals_of_the_public_demonstrations_follow_the_definition(item, nu
         assert world.decode(world.start) == item["start"]
     moves = zip(bound.states, bound.actions, bound.states[1:], strict=False)
     assert all(world.transitions[s][a] == after for s, a, after in moves if a is not None)
+
+
+def test_an_unknown_treatment_of_nan_is_refused():
+    demonstration = make_demonstration("d", {"x": [1, math.nan]})
+    for word in ("Refuse", "zero", None):
+        (found,) = refused(bind, spec("x"), demonstration, on_nan=word)
+        assert found.code == "D880"
+    assert "'refuse'" in refused(bind, spec("x"), demonstration, on_nan="Refuse")[0].help
+
+
+def test_states_of_an_environment_that_cannot_be_made_are_not_taken_for_those_of_another():
+    demonstration = make_demonstration("d", {"x": [1, 2]}, states=[[0, 0], [0, 1]], env={"id": "Nowhere-v0"})
+    bound = bind(spec("x"), demonstration, GRID)
+    assert values(bound) == {"x": [1, 2]}
+    assert bound.environment is None and bound.actions is None and bound.states == ([0, 0], [0, 1])
+    (found,) = refused(bind, spec("d_goal"), demonstration, GRID)
+    assert found.code == "D820"
+
+
+def test_whole_stamps_stay_whole():
+    stamps = [1_700_000_000_123_456_789, 1_700_000_000_123_456_790]
+    for kept in (stamps, np.array(stamps)):
+        demonstration = make_demonstration("d", {"x": [1, 2]}, time=kept)
+        assert bind(spec("x"), demonstration).time.tolist() == stamps
+        assert recording_of(document_of(demonstration), Path("d")).time.tolist() == stamps
+
+
+def test_a_masked_value_is_a_hole():
+    demonstration = make_demonstration("d", {"x": np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])})
+    assert values(bind(spec("x"), demonstration, on_nan="hold")) == {"x": [1, 1, 3]}

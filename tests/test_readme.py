@@ -15,6 +15,15 @@ SHELL = [body for kind, body in BLOCKS if kind == "sh"]
 COMMANDS = [line for body in SHELL[2:] for line in body.splitlines() if line]
 
 
+EXPECTED = [
+    "satisfied 0.0 1",
+    "[ True False] [1 1]",
+    "-inf 1.0 1.0 undecided",
+    "good True 3",
+    "I401 write [2, 5]",
+]
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder that looks like the checkout to the commands."""
@@ -36,6 +45,7 @@ def test_the_commands_run_in_order(folder: Path) -> None:
     for line in COMMANDS:
         command, _, comment = line.partition("#")
         expected = int(comment.split()[-1]) if comment.strip().startswith("exit") else 0
+        command, _, source = command.partition("<")
         words = shlex.split(command)
         assert words[0] == "stlspec"
         words = [
@@ -44,7 +54,12 @@ def test_the_commands_run_in_order(folder: Path) -> None:
             for path in (sorted(folder.glob(word)) if "*" in word else [Path(word)])
         ]
         run = subprocess.run(
-            [sys.executable, "-m", "stlspec", *words[1:]], cwd=folder, capture_output=True, text=True, check=False
+            [sys.executable, "-m", "stlspec", *words[1:]],
+            cwd=folder,
+            input=(folder / source.strip()).read_text() if source else None,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert run.returncode == expected, f"{line}\n{run.stdout}{run.stderr}"
         assert run.stdout.strip(), line
@@ -54,7 +69,7 @@ def test_the_python_example_runs(folder: Path) -> None:
     (code,) = [body for kind, body in BLOCKS if kind == "python"]
     run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    assert run.stdout.splitlines() == ["satisfied 0.0 1", "[ True False] [1 1]", "good True 3", "I401 write [2, 5]"]
+    assert run.stdout.splitlines() == EXPECTED
 
 
 def test_the_language_at_a_glance_checks() -> None:

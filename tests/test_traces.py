@@ -202,3 +202,45 @@ def test_a_unit_needs_stamps():
 def test_the_file_is_named():
     with pytest.raises(DataError, match=r"run\.csv"):
         make_trace(STEP, [X], {"x": [np.nan]}, file="run.csv")
+
+
+EPOCH = 1_700_000_000_123_456_789
+NANOSECONDS = TimeBase("stamps", "ns", 1)
+
+
+@pytest.mark.parametrize("kind", [list, np.array, lambda stamps: np.array(stamps, dtype=np.uint64)])
+def test_whole_stamps_keep_every_nanosecond(kind):
+    stamps = [EPOCH + k * 10_000_000 for k in range(5)]
+    trace = make_trace(NANOSECONDS, [X], {"x": range(5)}, kind(stamps))
+    assert trace.times.tolist() == [0, 10_000_000, 20_000_000, 30_000_000, 40_000_000]
+    assert trace.spacing == 10_000_000
+    assert trace.time(4) == float(stamps[4])
+
+
+@pytest.mark.parametrize("base", [STEP, NANOSECONDS, TimeBase("period", "ns", 1, period=1)])
+def test_whole_stamps_closer_than_floats_can_tell_still_increase(base):
+    assert make_trace(base, [X], {"x": [1, 2, 3]}, [EPOCH, EPOCH + 1, EPOCH + 2]).times.tolist() == [0, 1, 2]
+    message = refused("D802", base, [X], {"x": [1, 2]}, [EPOCH + 1, EPOCH])
+    assert f"{EPOCH} comes after {EPOCH + 1}" in message
+
+
+def test_whole_stamps_too_far_apart_are_refused():
+    refused("D812", NANOSECONDS, [X], {"x": [1, 2]}, np.array([-(2**63), 2**63 - 1]))
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.ma.array([1, 2], mask=[0, 1]),
+        np.ma.array([1.0, 2.0], mask=[0, 1]),
+        np.ma.array([1, 2], mask=[0, 1], dtype=object),
+        [np.ma.array([1, 2], mask=[0, 1]), np.array([1, 2])],
+    ],
+)
+def test_a_masked_value_is_no_sample(values):
+    assert "NaN at sample 1" in refused("D801", STEP, [X], {"x": values})
+
+
+def test_a_masked_boolean_and_a_masked_stamp_are_no_samples():
+    refused("D801", STEP, [Signal("b", "bool")], {"b": np.ma.array([True, False], mask=[0, 1])})
+    refused("D812", SECONDS, [X], {"x": [1, 2]}, np.ma.array([0, 1], mask=[0, 1]))

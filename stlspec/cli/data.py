@@ -36,6 +36,7 @@ class End(StrEnum):
 
     CLIP = "clip"
     STRICT = "strict"
+    INTERVAL = "interval"
 
 
 class OnNan(StrEnum):
@@ -255,5 +256,5 @@ def evaluate_formula(
         print_json(report.formula_document(formula, results))
     else:
         report.print_formula(results, sys.stdout)
-    if any(r.result.verdict.value != "satisfied" for r in results):
+    if any(r.result.verdict.value == "violated" for r in results):
         raise typer.Exit(1)

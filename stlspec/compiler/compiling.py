@@ -8,12 +8,14 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from numbers import Real
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.checks import check
 from stlspec.compiler.lower import lower
 from stlspec.compiler.model import Binding, Model
+from stlspec.compiler.quantities import scaled
 from stlspec.errors import Diagnostic, InputError, SpecError, diagnostic
 from stlspec.lang.parse import Syntax, parse
 from stlspec.lang.spelling import closest
@@ -128,4 +130,4 @@ def _value(given: object, unit: str | None, *, is_open: bool) -> Binding | str:
         return Binding(number, own)
     if own not in NANOSECONDS or unit not in NANOSECONDS:
         return f"the param is {'in ' + unit if unit else 'without a unit'}"
-    return Binding(number * NANOSECONDS[own] / NANOSECONDS[unit])
+    return Binding(scaled(number, Fraction(NANOSECONDS[own], NANOSECONDS[unit])))

@@ -5,6 +5,7 @@ and every expression bottom-up, so that neither a deep formula nor a chain of a 
 """
 
 from collections.abc import Sequence
+from fractions import Fraction
 from types import MappingProxyType
 
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement, Strength
@@ -14,7 +15,7 @@ from stlspec.compiler.horizon import horizons
 from stlspec.compiler.inference import NOW, SAME_UNIT
 from stlspec.compiler.ir import Builder, Interval, reachable
 from stlspec.compiler.model import Model
-from stlspec.compiler.quantities import conversion
+from stlspec.compiler.quantities import SAME, conversion, scaled
 from stlspec.lang.nodes import (
     Call,
     Expression,
@@ -150,11 +151,18 @@ class _Lowering:
         """Bring operands that are joined to the unit of the first one that has a unit."""
         units = [self.model.typing(e).unit for e in expressions]
         target: Dimension | None = next((u for u in units if u is not None), None)
-        factors = [conversion(unit, target) or 1.0 for unit in units]
-        return [
-            i if factor == 1.0 else self._real("mul", [i, self._constant(factor)])
-            for i, factor in zip(made, factors, strict=True)
-        ]
+        factors = [conversion(unit, target) or SAME for unit in units]
+        return [self._scaled(i, factor) for i, factor in zip(made, factors, strict=True)]
+
+    def _scaled(self, operand: int, factor: Fraction) -> int:
+        """Multiply by a factor; by division where it is below 1, since 0.001 is no binary number."""
+        node = self.builder.nodes[operand]
+        if node.op == "const" and isinstance(node.value, float):
+            return self._constant(scaled(node.value, factor))
+        for op, by in (("mul", factor.numerator), ("div", factor.denominator)):
+            if by > 1:
+                operand = self._real(op, [operand, self._constant(float(by))])
+        return operand
 
     def _call(self, node: Call, below: list[int]) -> int:
         name = node.function.text

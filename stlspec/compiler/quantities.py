@@ -4,7 +4,9 @@ In: operators with their operands' typings. Out: the unit of the result, or BROK
 None (a literal, a param without a unit) takes the unit of the other side; times alone are converted.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
@@ -16,14 +18,28 @@ Unit = Dimension | Typing | None
 """A dimension, None for "any", or BROKEN."""
 
 
-def conversion(unit: Dimension | None, to: Dimension | None) -> float | None:
+SAME = Fraction(1)
+"""The factor between equal units."""
+
+
+def conversion(unit: Dimension | None, to: Dimension | None) -> Fraction | None:
     """Return the factor from `unit` to `to`: 1 if equal or open, a ratio between times, None if there is none."""
     if unit is None or to is None or unit == to:
-        return 1.0
+        return SAME
     one, other = _time_word(unit), _time_word(to)
     if one is None or other is None:
         return None
-    return NANOSECONDS[one] / NANOSECONDS[other]
+    return Fraction(NANOSECONDS[one], NANOSECONDS[other])
+
+
+def scaled(value: float, factor: Fraction) -> float:
+    """Return a constant in another unit, rounded once from the decimal that is written: 1.001 s is 1001 ms."""
+    if factor == SAME or not math.isfinite(value):
+        return value
+    try:
+        return float(Fraction(repr(float(value))) * factor)
+    except OverflowError:
+        return math.copysign(math.inf, value)
 
 
 def _time_word(unit: Dimension) -> str | None:
@@ -49,8 +65,7 @@ class Quantities:
         """Return a constant's value in `unit`; None if it is not known."""
         if typing.value is None or isinstance(unit, Typing):
             return None
-        factor = conversion(typing.unit, unit)
-        return typing.value if factor in (None, 1.0) else typing.value * (factor or 1.0)
+        return scaled(typing.value, conversion(typing.unit, unit) or SAME)
 
     def joined(self, operands: Sequence[Operand], verb: str) -> Unit:
         """Return the common unit of operands that are added or compared."""

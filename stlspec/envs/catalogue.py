@@ -43,12 +43,12 @@ def make_environment(
 
     Not in the paper: the paper's environments and any other of gymnasium.
 
-    Args: args: its arguments. map_rows: its map, if it takes one. file: the input that asks for it, for
-        messages.
+    Args: args: its arguments. map_rows: its map, if it takes one, as rows or as lines of text. file: the input
+        that asks for it, for messages.
     Returns: the same object for the same request, since environments do not change.
     Raises: InputError D820, D821, D823 to D826, D842, D843.
     """
-    rows = None if map_rows is None else tuple(map_rows)
+    rows = None if map_rows is None else _rows(map_rows)
     try:
         key = json.dumps(dict(args or {}), sort_keys=True)
     except (TypeError, ValueError, RecursionError):
@@ -102,6 +102,12 @@ def _value(text: str) -> bool | int | float | str:
     if _INTEGER.fullmatch(text):
         return int(text)
     return float(text) if _FLOAT.fullmatch(text) else text
+
+
+def _rows(map_rows: Sequence[str]) -> tuple[str, ...]:
+    """Return the rows of a map; text is taken by its lines, for as a sequence it would be a map of one column."""
+    lines = [line.strip() for line in map_rows.strip().splitlines()] if isinstance(map_rows, str) else map_rows
+    return tuple(lines)
 
 
 @lru_cache(maxsize=_KEPT)

@@ -153,8 +153,8 @@ CODES: tuple[Code, ...] = (
         "sequence for each trace",
         explanation="One trace is one sequence of values for each signal. A batch has one row for each "
         "trace, and all signals have the same traces. Traces of unequal length come as lists of sequences.",
-        bad='{"signals": {"x": 3}}',
-        good='{"signals": {"x": [3]}}',
+        bad='spec.evaluate({"x": 3})',
+        good='spec.evaluate({"x": [3]})',
         kind="shown",
     ),
 )

@@ -83,7 +83,7 @@ CODES: tuple[Code, ...] = (
         "a value that cannot be bound",
         "error",
         message="`{value}` is not a value for param `{name}`: {problem}",
-        help="write a number, with a time unit where the param has one: -p {name}=12 or -p {name}=12s",
+        help="write a number, as in -p {name}=12; a time unit may follow where the param is a time",
         explanation="A value without a unit is in the param's declared unit; one with a time unit is converted.",
         bad="# stlspec score spec.stl demo.csv -p T=soon",
         good="# stlspec score spec.stl demo.csv -p T=12",

@@ -25,6 +25,8 @@ from stlspec.readers.model import (
     repeated,
 )
 
+_FLOATS_TELL_APART = 2.0**53
+"""Whole numbers below this are the same as floats."""
 _EXPECTED = "a header with the names of the columns, then one row a sample"
 
 
@@ -41,9 +43,8 @@ def read(path: Path) -> list[Recording]:
         header = next((_header(row, path) for row in reader if row), None)
         if header is None:
             raise refusal("D833", path, expected=_EXPECTED)
-        table = _numbers(stream, header)
-        if table is not None:
-            columns = dict(zip(header, table, strict=True))
+        columns = _numbers(stream, header)
+        if columns is not None:
             return [checked(Recording(time=columns.pop("time", None), columns=columns), path)]
         rows = _rows(reader, header, path)
     except csv.Error as error:
@@ -55,11 +56,8 @@ def read(path: Path) -> list[Recording]:
     return _recordings(dict(zip(header, zip(*rows, strict=True), strict=True)), path)
 
 
-def _numbers(stream: io.StringIO, header: Sequence[str]) -> Array | None:
-    """Convert all rows at once, which is thrice as fast; None, and the stream where it was, if that fails.
-
-    Returns: (n_columns, n_samples).
-    """
+def _numbers(stream: io.StringIO, header: Sequence[str]) -> dict[str, Array] | None:
+    """Convert all rows at once, which is thrice as fast; None, and the stream where it was, if that fails."""
     begin = stream.tell()
     if not {"episode", "action"} & set(header) and stream.read(1).strip():
         stream.seek(begin)
@@ -69,9 +67,30 @@ def _numbers(stream: io.StringIO, header: Sequence[str]) -> Array | None:
             # Words, holes, quotes or ragged rows: the slow path reads them, or says what is wrong.
             table = np.empty((0, 0))
         if table.shape[1] == len(header):
-            return np.ascontiguousarray(table.T)
+            columns = dict(zip(header, np.ascontiguousarray(table.T), strict=True))
+            if "time" in columns and np.abs(columns["time"]).max() >= _FLOATS_TELL_APART:
+                stream.seek(begin)
+                columns["time"] = _whole(stream, header.index("time"), columns["time"])
+            return columns
     stream.seek(begin)
     return None
+
+
+def _whole(stream: io.StringIO, at: int, floats: Array) -> Array:
+    """Read one column again as whole numbers; it stays as it is if it holds anything else."""
+    try:
+        return np.loadtxt(
+            stream,
+            delimiter=",",
+            comments=None,
+            usecols=at,
+            ndmin=1,
+            dtype=np.int64,
+            converters={at: int},
+            encoding=None,
+        )
+    except (ValueError, OverflowError):
+        return floats
 
 
 def _rows(reader: Any, header: Sequence[str], path: Path) -> list[list[str]]:
@@ -88,8 +107,9 @@ def _rows(reader: Any, header: Sequence[str], path: Path) -> list[list[str]]:
 def _recordings(words: dict[str, tuple[str, ...]], path: Path) -> list[Recording]:
     labels = words.pop("episode", None)
     actions = words.pop("action", None)
+    stamps = words.pop("time", None)
+    time = None if stamps is None else _stamps(stamps)
     columns = {name: _column(column) for name, column in words.items()}
-    time = columns.pop("time", None)
     groups = [(None, slice(None))] if labels is None else _groups(labels)
     return [
         checked(
@@ -137,6 +157,16 @@ def _column(words: Sequence[str]) -> Array:
         return column_of([number_of_word(word) for word in words])
     # Python reads 1_0 as ten, and so does NumPy; no spreadsheet does.
     return column if not any("_" in word for word in words) else column_of(list(map(number_of_word, words)))
+
+
+def _stamps(words: Sequence[str]) -> Array:
+    """Convert time stamps, to whole numbers if all are written as such."""
+    if not any("_" in word for word in words):
+        try:
+            return np.array([int(word) for word in words], dtype=np.int64)
+        except (ValueError, OverflowError):
+            pass
+    return _column(words)
 
 
 def _groups(labels: Sequence[str]) -> list[tuple[str | None, Any]]:

@@ -7,16 +7,20 @@ that other tools can keep their notes in the same file.
 
 import json
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from stlspec.errors import DataError
-from stlspec.readers.model import Array, Recording, checked, column_of, refusal, repeated
+from stlspec.readers.model import Array, Recording, checked, column_of, refusal, repeated, time_of
 
 SCHEMA = "stlspec.demo/1"
 _WORDS = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 _OBJECT = 'a demonstration is an object such as {"signals": {"x": [1, 2]}}'
+
+
+_ESCAPED_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
 class _RepeatedKeyError(ValueError):
@@ -29,10 +33,15 @@ def decode(text: str, file: Path, line: int = 1) -> Any:
     Not in the paper: a file format.
 
     Args:   line: the line of the file on which `text` begins, for messages.
-    Raises: DataError D835: a key comes twice; D836: it is no JSON, is cut off, or is nested too deeply.
+    Raises: DataError D835: a key comes twice; D836: it is no JSON, is cut off, is nested too deeply, or has half
+        of a surrogate pair.
     """
     try:
-        return json.loads(text, object_pairs_hook=_pairs)
+        value = json.loads(text, object_pairs_hook=_pairs)
+        if _ESCAPED_SURROGATE.search(text):
+            # Half of a pair is no character: neither a terminal nor a file could show it later.
+            json.dumps(value, ensure_ascii=False).encode()
+        return value
     except json.JSONDecodeError as error:
         cut = error.pos >= len(text.rstrip())
         hint = "the file seems to be cut off" if cut else "check it with: python -m json.tool FILE"
@@ -46,6 +55,10 @@ def decode(text: str, file: Path, line: int = 1) -> Any:
         raise refusal(
             "D836", file, format="JSON", reason="it is nested too deeply", where=_on(line), help=hint
         ) from None
+    except UnicodeEncodeError as error:
+        reason = f"\\u{ord(error.object[error.start]):04x} is half of a surrogate pair"
+        hint = "write both halves, or the character itself"
+        raise refusal("D836", file, format="JSON", reason=reason, where=_on(line), help=hint) from None
     except ValueError:
         # Python refuses to convert whole numbers of more than 4300 digits.
         hint = 'write it as 1e999 or "inf" if it stands for infinity'
@@ -81,7 +94,7 @@ def recording_of(document: Any, file: Path, place: str = "the demonstration") ->
     time = document.get("time")
     recording = Recording(
         name=_text(document.get("name"), f"'name' of {place}", file),
-        time=None if time is None else _column(time, f"'time' of {place}", file),
+        time=None if time is None else _column(time, f"'time' of {place}", file, time_of),
         columns={k: _column(v, f"signal '{k[:60]}' of {place}", file) for k, v in (signals or {}).items()},
         states=_list(states, f"'states' of {place}", file),
         actions=_list(document.get("actions"), f"'actions' of {place}", file),
@@ -145,7 +158,7 @@ def _list(value: Any, place: str, file: Path) -> tuple[Any, ...] | None:
     return None if value is None else tuple(value)
 
 
-def _column(values: Any, place: str, file: Path) -> Array:
+def _column(values: Any, place: str, file: Path, convert: Callable[[Sequence[Any]], Array] = column_of) -> Array:
     listed = _list(values, place, file) or ()
     kinds = set(map(type, listed))
     for kind in (list, dict):
@@ -159,7 +172,7 @@ def _column(values: Any, place: str, file: Path) -> Array:
             math.nan if value is None else _WORDS.get(value, value) if isinstance(value, str) else value
             for value in listed
         )
-    return column_of(listed)
+    return convert(listed)
 
 
 def _environment(value: Any, place: str, file: Path) -> dict[str, Any] | None:

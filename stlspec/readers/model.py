@@ -28,7 +28,8 @@ Array: TypeAlias = npt.NDArray[Any]
 class Recording:
     """One episode as a file has it.
 
-    name: its own name, if it has one. time: (n_samples,) float64, as written, without a unit.
+    name: its own name, if it has one. time: (n_samples,), as written, without a unit; int64 where stamps are
+    written as whole numbers, else float64.
     columns: for each name an array (n_samples,), float64 or bool; object where the values are neither.
     states: one a sample, as written. actions: one a sample but the first; actions[k] leads to sample k + 1.
     env: the environment it was made in, as described in the file. episode: what tells it from the other
@@ -156,6 +157,16 @@ def column_of(values: Sequence[Any]) -> Array:
     column = np.empty(len(values), dtype=object)
     column[:] = values
     return column
+
+
+def time_of(values: Sequence[Any]) -> Array:
+    """Turn time stamps into a column that keeps whole numbers whole; otherwise as `column_of`.
+
+    Not in the paper: exactness of time.
+    """
+    if set(map(type, values)) == {int} and max(map(abs, values)) < 2**63:
+        return np.array(values, dtype=np.int64)
+    return column_of(values)
 
 
 def _finite_or_infinite(value: float) -> float:

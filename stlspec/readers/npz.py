@@ -24,6 +24,7 @@ from stlspec.readers.model import (
     refusal,
     repeated,
 )
+from stlspec.traces import whole_stamps
 
 _BROKEN = (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, NotImplementedError, RuntimeError)
 _HELP = 'write it with numpy.savez("demo.npz", x=[...], y=[...])'
@@ -44,7 +45,7 @@ def read(path: Path) -> list[Recording]:
     states, actions = arrays.pop("states", None), arrays.pop("actions", None)
     columns = {name: _column(array, f"signal '{name}'", path) for name, array in arrays.items()}
     whole = Recording(
-        time=None if time is None else _column(time, "'time'", path),
+        time=None if time is None else _time(time, path),
         columns=columns,
         states=None if states is None else _entries(states, "'states'", path),
         actions=None if actions is None else _entries(actions, "'actions'", path),
@@ -94,6 +95,12 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> Arr
     with archive.open(member) as stream:
         array: Array = np.lib.format.read_array(stream, allow_pickle=False)
     return array
+
+
+def _time(array: Array, path: Path) -> Array:
+    column = _column(array, "'time'", path)
+    whole = whole_stamps(array)
+    return column if whole is None else whole
 
 
 def _column(array: Array, place: str, path: Path) -> Array:

@@ -90,13 +90,16 @@ class RequirementResult:
     """One requirement on one trace: its robustness and verdict at the reported sample.
 
     values: the robustness at every sample in min/max, whatever the algebra, ties told apart as
-    `robustness.TIE` says.
+    `robustness.TIE` says. low, high: enclose the robustness over every way the trace can go on, where that was
+    asked for (`ending.evaluate_ending`), else None.
     """
 
     robustness: float
     verdict: Verdict
     origin: Origin = field(repr=False)
     values: Floats = field(repr=False)
+    low: float | None = None
+    high: float | None = None
 
     @cached_property
     def signal(self) -> Floats:

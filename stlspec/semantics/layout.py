@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stlspec.errors import DataError, diagnostic
+from stlspec.traces import unmasked, whole_stamps
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,6 +127,7 @@ def _row_length(columns: Mapping[str, Any], number: int, file: str | None) -> in
 def _key(stamps: Any, number: int) -> Any:
     """Return a key that is equal for equal stamps; stamps that are no numbers are refused later."""
     try:
-        return np.asarray(stamps, dtype=np.float64).tobytes()
+        whole = whole_stamps(stamps)
+        return (np.asarray(unmasked(stamps), dtype=np.float64) if whole is None else whole).tobytes()
     except (TypeError, ValueError, OverflowError):
         return number

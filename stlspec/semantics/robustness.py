@@ -6,8 +6,8 @@ are: min, max and negation only select and flip, so the sign of every value is t
 and non-strict comparisons kept apart, and no value is 0. `shown` turns ties into the 0 that they stand for.
 """
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,8 +83,9 @@ def batches(trace: Trace) -> Iterator[tuple[int, Trace]]:
 def _evaluate(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, spare: list[Floats]) -> list[Floats]:
     """Evaluate `roots`; `spare` holds arrays to write to, and takes those that are no longer needed."""
     needed = needed_nodes(nodes, roots)
-    uses = Counter(c for i in needed for c in nodes[i].children)
-    uses.update(roots)
+    uses = [0] * len(nodes)
+    for index in chain(roots, *(nodes[i].children for i in needed)):
+        uses[index] += 1
     grid = Grid(trace.times, trace.spacing)
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):

@@ -21,18 +21,28 @@ class Row:
 
 @dataclass(frozen=True)
 class Goal:
-    """A number and the bound it should keep; value None: it could not be measured."""
+    """A number and the bound it should keep; value None: it could not be measured.
+
+    least, most: what the rounds allow; a bound between them is neither kept nor broken for certain.
+    """
 
     text: str
     value: float | None
     bound: float
     at_least: bool = True
+    least: float | None = None
+    most: float | None = None
 
     @property
     def met(self):
         if self.value is None:
             return None
         return self.value >= self.bound if self.at_least else self.value <= self.bound
+
+    @property
+    def close(self):
+        """Whether the bound lies within the spread of the rounds."""
+        return self.least is not None and self.most is not None and self.least < self.bound < self.most
 
 
 @dataclass
@@ -78,7 +88,8 @@ def text_of(section):
         sign = ">=" if goal.at_least else "<="
         word = {True: "met", False: "MISSED", None: "not measured"}[goal.met]
         value = "-" if goal.value is None else f"{goal.value:.3g}"
-        lines.append(f"  goal: {goal.text} {sign} {goal.bound:g}: {value}  {word}")
+        doubt = f", but the rounds allow {goal.least:.3g} to {goal.most:.3g}" if goal.close else ""
+        lines.append(f"  goal: {goal.text} {sign} {goal.bound:g}: {value}  {word}{doubt}")
     return "\n".join([*lines, *(f"  {note}" for note in section.notes)])
 
 
@@ -111,6 +122,8 @@ def document_of(sections, machine):
                         "bound": goal.bound,
                         "at_least": goal.at_least,
                         "met": goal.met,
+                        "least": goal.least,
+                        "most": goal.most,
                     }
                     for goal in section.goals
                 ],

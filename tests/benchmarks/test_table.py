@@ -37,6 +37,18 @@ def test_the_document_is_json_with_the_same_numbers(section):
     assert [goal["met"] for goal in found["goals"]] == [True, False, None]
 
 
+@pytest.mark.parametrize(
+    ("goal", "text"),
+    [
+        (Goal("t", 5.1, 5, least=4.6, most=5.5), "  goal: t >= 5: 5.1  met, but the rounds allow 4.6 to 5.5"),
+        (Goal("t", 5.1, 5, least=5.05, most=5.5), "  goal: t >= 5: 5.1  met"),
+        (Goal("t", 4.9, 5, least=4.6, most=5.5), "  goal: t >= 5: 4.9  MISSED, but the rounds allow 4.6 to 5.5"),
+    ],
+)
+def test_a_bound_within_the_spread_is_said_to_be_close(goal, text):
+    assert text_of(Section("title", goals=[goal])).splitlines()[1] == text
+
+
 @pytest.mark.parametrize(("unit", "shown"), [("M samples/s", 0.5), ("us", 2.0), ("ms", 2e-3), ("s", 2e-6)])
 def test_two_microseconds_in_every_unit(unit, shown):
     assert number(2e-6, unit) == pytest.approx(shown)

@@ -60,17 +60,19 @@ class Data:
 
     def __init__(self, folder, longest):
         folder.mkdir(parents=True, exist_ok=True)
-        rng = np.random.default_rng(0)
-        self.long = self._save(folder / "long.npz", rng, longest)
-        self.short = self._save(folder / "short.npz", rng, 100_000)
-        self.batch = self._save(folder / "batch.npz", rng, (1000, 1000))
+        self.long = self._save(folder / "long.npz", 1, longest)
+        self.short = self._save(folder / "short.npz", 2, 100_000)
+        self.batch = self._save(folder / "batch.npz", 3, (1000, 1000))
         self.streams = {}
         for shape in SHAPES:
             self.streams[shape] = str(folder / f"{shape}.npz")
-            np.savez(self.streams[shape], x=wave(shape, 20_000, rng), y=wave(shape, 20_000, rng) - 1)
+            x, y = (wave(shape, 20_000, np.random.default_rng(seed)) for seed in (4, 5))
+            np.savez(self.streams[shape], x=x, y=y - 1)
 
     @staticmethod
-    def _save(path, rng, shape):
+    def _save(path, seed, shape):
+        # A seed for each file: what is in it does not depend on the size of the others.
+        rng = np.random.default_rng(seed)
         np.savez(path, x=rng.uniform(-1, 2, shape), y=rng.uniform(-2, 1, shape))
         return str(path)
 

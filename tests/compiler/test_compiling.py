@@ -94,3 +94,9 @@ def test_an_empty_text_is_a_spec_with_an_error():
     with pytest.raises(SpecError) as caught:
         compile_source(SourceText.of("s", " \n# nothing\n"))
     assert ([d.code for d in caught.value.diagnostics], caught.value.exit_code) == (["S016"], 1)
+
+
+def test_a_given_time_in_another_unit_is_rounded_once():
+    text = "time s\nparam T = 8 s\nparam U = 8 ms\nhard a: now <= T or now <= U"
+    for n in range(1, 2000):
+        assert compiled({"T": f"{n} ms", "U": f"{n / 1000!r} s"}, text) == {"T": (n / 1000, "s"), "U": (n, "ms")}

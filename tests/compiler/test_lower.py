@@ -75,8 +75,8 @@ def test_constants_are_folded_and_shared():
 
 def test_times_are_brought_to_the_unit_of_the_first_side_that_has_one():
     nodes = nodes_of("now < T and T > now", "time 100 ms\nparam T = 2 s\n")
-    assert [n.value for n in nodes if n.op == "const"] == [2000.0, 2.0, 0.001]
-    assert [n.op for n in nodes] == ["now", "const", "lt", "const", "const", "mul", "gt", "and"]
+    assert [n.value for n in nodes if n.op == "const"] == [2000.0, 2.0, 1000.0]
+    assert [n.op for n in nodes] == ["now", "const", "lt", "const", "const", "div", "gt", "and"]
 
 
 def test_a_param_is_a_constant_and_a_bool_signal_a_formula():
@@ -105,3 +105,9 @@ def test_a_header_arrives_in_the_requirement():
 def test_names_of_lets_point_at_their_nodes():
     bundle = compile_source(SourceText.of("s", "signal x\nlet p = x > 1\nlet unused = x > 2\nhard a: always p"))
     assert {name: bundle.nodes[i].op for name, i in bundle.names.items()} == {"p": "gt"}
+
+
+@pytest.mark.parametrize("formula", ["now >= 700 ms", "700 ms <= 0.7 s + 0 * now", "0.7 s >= 700 ms"])
+def test_a_time_in_another_unit_is_the_same_time(formula):
+    result = api.compile(f"time s\nhard a: always[0.7 s, 0.7 s] ({formula})").evaluate({}, time=[0, 0.7])["a"]
+    assert result.verdict.value == "satisfied"

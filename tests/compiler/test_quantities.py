@@ -3,7 +3,7 @@
 import pytest
 
 from stlspec.compiler.checks import check
-from stlspec.compiler.quantities import conversion
+from stlspec.compiler.quantities import conversion, scaled
 from stlspec.lang.parse import parse
 from stlspec.lang.units import spell
 from stlspec.source import SourceText
@@ -118,3 +118,14 @@ def test_conversion_exists_between_times_only():
 
 def test_a_unit_declared_for_a_signal_may_stand_behind_a_param_above_it():
     assert check(parse(SourceText.of("s", 'param p = 5 parsec\nsignal x unit "parsec"\nhard a: x > p')))[1] == ()
+
+
+def test_whole_milliseconds_are_that_many_thousandths_of_a_second_from_either_side():
+    for n in range(1, 2000):
+        assert scaled(float(n), conversion({"ms": 1}, {"s": 1})) == n / 1000
+        assert scaled(n / 1000, conversion({"s": 1}, {"ms": 1})) == n
+
+
+def test_what_is_too_large_for_another_unit_is_infinite():
+    factor = conversion({"h": 1}, {"ns": 1})
+    assert [scaled(x, factor) for x in (1e308, -1e308, float("inf"))] == [float("inf"), -float("inf"), float("inf")]

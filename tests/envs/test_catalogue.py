@@ -3,6 +3,7 @@ import sys
 from importlib.metadata import EntryPoint
 
 import pytest
+
 from stlspec.envs import catalogue
 from stlspec.envs.catalogue import BUILT_IN, environment_of, make_environment, parse_env_args
 from stlspec.envs.model import Environment
@@ -109,3 +110,10 @@ def test_an_argument_that_cannot_be_read_is_refused(texts):
 def test_gymnasium_loads_only_when_an_environment_is_asked_for():
     program = "import stlspec.envs.catalogue, sys; print('gymnasium' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout == "False\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"), [("S.G", ("S.G",)), ("S..\n..G\n", ("S..", "..G")), ("\n  S..\n  ..G\n", ("S..", "..G"))]
+)
+def test_a_map_given_as_text_is_taken_by_its_lines(text, rows):
+    assert make_environment("stlspec/GridWorld-v0", map_rows=text).map == rows

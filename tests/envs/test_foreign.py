@@ -1,4 +1,5 @@
 import pytest
+
 from stlspec.envs.catalogue import make_environment
 from stlspec.envs.foreign import environment, make, make_quietly
 from stlspec.errors import UsageError

@@ -1,6 +1,7 @@
 import gymnasium
 import pytest
 from gymnasium.utils.env_checker import check_env
+
 from stlspec.envs.gridworld import DEFAULT_MAP, ID, environment, register
 from stlspec.envs.maps import GRIDWORLD, parse_map
 from stlspec.errors import DataError, UsageError

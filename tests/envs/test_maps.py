@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from stlspec.envs.maps import FROZENLAKE, GRIDWORLD, four_moves, parse_map, read_map
 from stlspec.errors import DataError
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.envs.catalogue import make_environment
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError

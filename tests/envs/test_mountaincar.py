@@ -1,6 +1,7 @@
 import gymnasium
 import numpy as np
 import pytest
+
 from stlspec.envs.mountaincar import environment
 from stlspec.errors import UsageError
 

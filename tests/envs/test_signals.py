@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+
 from stlspec.envs.maps import GRIDWORLD, parse_map
 from stlspec.envs.signals import field, grid_signals, manhattan, signal_names
 

@@ -1,7 +1,10 @@
+import json
 from pathlib import Path
 
 import pytest
-from stlspec.errors import DataError
+
+from stlspec.envs.catalogue import environment_of, make_environment
+from stlspec.errors import DataError, UsageError
 from stlspec.errors.inputs import CODES
 from stlspec.readers.csv import read
 
@@ -28,3 +31,14 @@ def test_the_examples_do_what_they_illustrate(row, tmp_path: Path):
         read(tmp_path / "bad.csv")
     assert [d.code for d in error.value.diagnostics] == [row.code]
     assert read(tmp_path / "good.csv")[0].n_samples > 0
+
+
+def test_the_examples_of_environments_do_what_they_illustrate():
+    rows = {row.code: row for row in CODES}
+    with pytest.raises(DataError, match="D828"):
+        eval(rows["D828"].bad, {"make_environment": make_environment})
+    assert eval(rows["D828"].good, {"make_environment": make_environment}) == 1
+    bad, good = (json.loads(text)["env"] for text in (rows["D829"].bad, rows["D829"].good))
+    with pytest.raises(UsageError, match="D829"):
+        environment_of(bad)
+    assert environment_of(good).id == "FrozenLake-v1"

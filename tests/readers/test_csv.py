@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.errors import DataError
 from stlspec.readers.csv import read
 
@@ -150,3 +151,17 @@ def test_a_wide_header_is_checked_quickly(load):
     names = [f"s{k}" for k in range(50_000)]
     (found,) = load(",".join(names) + "\n" + ",".join("1" * 50_000) + "\n")
     assert len(found.columns) == 50_000
+
+
+@pytest.mark.parametrize("rest", ["1", "true", "fast"])
+def test_whole_time_stamps_keep_every_nanosecond(load, rest):
+    (recording,) = load(f"x,time\n{rest},1700000000123456789\n{rest},1700000000123456790\n")
+    assert recording.time.dtype == np.int64
+    assert recording.time.tolist() == [1700000000123456789, 1700000000123456790]
+
+
+@pytest.mark.parametrize("stamp", ["1.5", "1e18", "9" * 30])
+@pytest.mark.parametrize("rest", ["1", "true"])
+def test_other_time_stamps_are_floats(load, stamp, rest):
+    (recording,) = load(f"time,x\n0,{rest}\n{stamp},{rest}\n")
+    assert recording.time.tolist() == [0, float(stamp)]

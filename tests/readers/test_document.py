@@ -1,9 +1,11 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.errors import DataError
 from stlspec.readers.document import decode, numbered, recording_of
 from stlspec.readers.model import Recording
@@ -122,3 +124,19 @@ def test_several_recordings_are_numbered_from_zero_unless_they_say():
     several = numbered([Recording(), Recording(episode="z"), Recording()])
     assert [each.episode for each in several] == ["0", "z", "2"]
     assert [each.episode for each in numbered([Recording()])] == [None]
+
+
+def test_whole_time_stamps_keep_every_nanosecond():
+    stamps = [1700000000123456789, 1700000000123456790]
+    assert recording_of({"time": stamps, "signals": {"x": [1, 2]}}, FILE).time.tolist() == stamps
+    assert recording_of({"time": [0, None], "signals": {"x": [1, 2]}}, FILE).time.dtype == np.float64
+
+
+@pytest.mark.parametrize("text", [r'{"name": "\ud800"}', r'{"a\uDFFF": 1}', r'{"env": {"id": ["\udc00\ud800"]}}'])
+def test_half_of_a_surrogate_pair_is_refused(text):
+    found, shown = refused(decode, text, FILE, 3)
+    assert found == "D836" and "surrogate" in shown and "line 3" in shown
+
+
+def test_a_whole_surrogate_pair_and_a_backslash_are_characters():
+    assert decode(r'{"a": "\ud83d\ude00", "b": "\\ud800", "c": NaN}', FILE)["a"] == "😀"

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+
 from stlspec.errors import DataError
 from stlspec.readers.json import read
 

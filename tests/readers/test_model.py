@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.errors import DataError
 from stlspec.readers.model import (
     Recording,
@@ -15,6 +16,7 @@ from stlspec.readers.model import (
     read_bytes,
     read_text,
     repeated,
+    time_of,
 )
 
 FILE = Path("d.json")
@@ -150,3 +152,8 @@ def test_an_unreadable_file_is_refused(tmp_path: Path, monkeypatch):
     with pytest.raises(DataError, match="Permission denied") as error:
         read_bytes(file, "data")
     assert codes(error) == ["D830"]
+
+
+def test_whole_time_stamps_stay_whole_if_they_fit():
+    assert time_of([0, 2**63 - 1]).tolist() == [0, 2**63 - 1]
+    assert time_of([0, 0.5]).dtype == time_of([0, 2**63]).dtype == np.float64

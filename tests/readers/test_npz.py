@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stlspec.errors import DataError
 from stlspec.readers.npz import read
 
@@ -136,3 +137,9 @@ def test_a_damaged_archive_is_read_or_refused(data, tmp_path_factory):
         assert read(file)[0].n_samples > 0
     except DataError as error:
         assert all(d.file == str(file) for d in error.diagnostics)
+
+
+def test_whole_time_stamps_keep_every_nanosecond(file):
+    stamps = [1700000000123456789, 1700000000123456790]
+    np.savez(file, time=np.array(stamps), x=[1, 2])
+    assert read(file)[0].time.tolist() == stamps

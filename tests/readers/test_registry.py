@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from stlspec.errors import DataError
 from stlspec.readers import registry
 from stlspec.readers.model import Recording

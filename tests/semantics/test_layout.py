@@ -61,3 +61,8 @@ def test_rows_that_do_not_belong_together_are_refused(signals, time, code):
 def test_the_trace_of_unequal_length_is_named():
     with pytest.raises(DataError, match=r"--> runs, trace 1"):
         arrange(["x", "y"], {"x": [[1], [2, 3]], "y": [[1], [2]]}, file="runs")
+
+
+def test_traces_whose_whole_stamps_differ_by_a_nanosecond_do_not_share_them():
+    stamps = [[10**18, 10**18 + 1], [10**18, 10**18 + 2]]
+    assert groups({"x": [[1, 2], [3, 4]]}, stamps) == [(0,), (1,)]

@@ -31,6 +31,8 @@ def clamp(low: float, high: float, x: float) -> float:
 
 def changed(table: Table, changes: Sequence[Change]) -> Table:
     """Return the table after unknowns went through clamps."""
+    if len(table) == 4:
+        return _changed_pair(table, changes)
     result = table[:]
     for unknown, low, high in changes:
         bit = 1 << unknown
@@ -42,8 +44,32 @@ def changed(table: Table, changes: Sequence[Change]) -> Table:
     return result
 
 
+def _changed_pair(table: Table, changes: Sequence[Change]) -> Table:
+    """Return what `changed` does for two unknowns, five times as fast."""
+    a, b, c, d = table
+    for unknown, low, high in changes:
+        if unknown:
+            b, c = c, b
+        # The pairs that differ in this unknown are now (a, b) and (c, d).
+        if low != -INF:
+            low_a, low_c = (a if low < a else b if low > b else low), (c if low < c else d if low > d else low)
+        else:
+            low_a, low_c = a, c
+        if high != INF:
+            b, d = (a if high < a else b if high > b else high), (c if high < c else d if high > d else high)
+        a, c = low_a, low_c
+        if unknown:
+            b, c = c, b
+    return [a, b, c, d]
+
+
 def value_at(table: Table, point: Sequence[float]) -> float:
     """Return the value of the formula at a point, one number for each unknown."""
+    if len(table) == 4:
+        a, b, c, d = table
+        x, y = point
+        a, b = (a if y < a else c if y > c else y), (b if y < b else d if y > d else y)
+        return a if x < a else b if x > b else x
     for x in reversed(point):
         half = len(table) // 2
         table = [a if x < a else b if x > b else x for a, b in zip(table[:half], table[half:], strict=True)]
@@ -76,7 +102,7 @@ class Tables(Remembering):
 
     def push(self, time: int, table: Table) -> None:
         """Add the body at a newer sample."""
-        self.least = list(map(min, self.least, table))
+        self.least = [a if a < b else b for a, b in zip(self.least, table, strict=True)]
         if self._forget:
             self.newer.append((time, table))
             if self.front == FOREVER:
@@ -95,8 +121,10 @@ class Tables(Remembering):
         """Add changes to a total: those that came `before` it apply last to the unknown."""
         for unknown, low, high in changes:
             _, a, b = total[unknown]
-            outer, inner = ((low, high), (a, b)) if before else ((a, b), (low, high))
-            total[unknown] = (unknown, clamp(*outer, inner[0]), clamp(*outer, inner[1]))
+            if before:
+                a, b, low, high = low, high, a, b
+            low, high = (a if low < a else b if low > b else low), (a if high < a else b if high > b else high)
+            total[unknown] = (unknown, low, high)
 
     def pop(self) -> tuple[int, Table]:
         """Take out the oldest sample: its time, and its body after all that happened."""
@@ -156,11 +184,12 @@ def _entry(value: Any) -> tuple[int | None, Any]:
 class Phase:
     """What holds for samples of some ages: from `begin` ticks on, until the next phase.
 
-    changing: (unknown, which of its two clamps a sample applies). points: low, high, current. ending: unknowns
-    whose windows end when the phase begins, with their value from then on.
+    changing: unknowns that a sample changes, each with where its clamp is among the arguments. points: low,
+    high, current. ending: unknowns whose windows end when the phase begins, with their value from then on.
+    distinct, which: the points without repetition, and where each of the three is among them.
     """
 
-    __slots__ = ("begin", "changing", "ending", "forget", "points")
+    __slots__ = ("begin", "changing", "distinct", "ending", "forget", "points", "which")
 
     def __init__(
         self,
@@ -180,8 +209,10 @@ class Phase:
             if closed and high is not None and begin == high + 1:
                 self.ending.append((i, fills[0][2], fills[0][2]))
             elif not closed and (not waiting or waits):
-                self.changing.append((i, int(waiting)))
+                self.changing.append((i, 1 + 4 * i + 2 * waiting))
         self.points = [list(point) for point in zip(*columns, strict=True)]
+        self.distinct = [point for i, point in enumerate(self.points) if point not in self.points[:i]]
+        self.which = [self.distinct.index(point) for point in self.points]
 
 
 class Corners(Remembering):
@@ -222,18 +253,16 @@ class Corners(Remembering):
             self.queues[0].push(time, [values[0], *self._top])
         for phase, queue in zip(self._phases, self.queues, strict=True):
             if phase.changing:
-                at = [(i, 1 + 4 * i + 2 * which) for i, which in phase.changing]
-                queue.change([(i, values[j], values[j + 1]) for i, j in at])
+                queue.change([(i, values[j], values[j + 1]) for i, j in phase.changing])
         self._move(time + self._stride)
         return self._told(time)
 
     def _told(self, time: int) -> Enclosure:
         low = high = current = self.closed
         for phase, queue in zip(self._phases, self.queues, strict=True):
-            if phase.points:
-                low = min(low, queue.value(phase.points[0]))
-                high = min(high, queue.value(phase.points[1]))
-                current = min(current, queue.value(phase.points[2]))
+            if phase.points and (queue.front != FOREVER or not phase.forget):
+                values = [queue.value(point) for point in phase.distinct]
+                low, high, current = map(min, (low, high, current), [values[i] for i in phase.which])
         if time <= self._close:
             low = min(low, self._tail[0])
             high = min(high, self._tail[1]) if self._certain else high

@@ -31,9 +31,10 @@ from stlspec.semantics.online.late import (
 )
 from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Ends, Plan, make_plan
-from stlspec.semantics.online.program import Program, compiled, shown
+from stlspec.semantics.online.program import Program, compiled
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, whole
 from stlspec.semantics.online.tape import Tape, reach_back
+from stlspec.semantics.robustness import TIE
 
 Floats = NDArray[np.float64]
 
@@ -55,7 +56,19 @@ class Network(Remembering):
     of samples at which it is known.
     """
 
-    __slots__ = ("_bundle", "_found", "_inputs", "_late", "_others", "_plan", "_reach", "counts", "sinks", "tape")
+    __slots__ = (
+        "_bundle",
+        "_inputs",
+        "_late",
+        "_others",
+        "_plan",
+        "_reach",
+        "_timed",
+        "counts",
+        "found",
+        "sinks",
+        "tape",
+    )
     STATE: ClassVar[State] = {"counts": lambda value: [whole(x) for x in items(value)]}
 
     def __init__(self, bundle: BundleData, plan: Plan) -> None:
@@ -65,8 +78,9 @@ class Network(Remembering):
         reach = reach_back(plan, self._others, roots)
         self._reach = None if deferred(bundle, plan) else reach
         self.counts = [0] * len(roots)
-        self.tape = Tape(1 + len(self._inputs))
-        self._found: list[Known] = []
+        self._timed = plan.base.kind != "step"
+        self.tape = Tape(len(self._inputs) + self._timed)
+        self.found: list[Known] = []
         self._late: dict[int, Late] = {}
         self.sinks = self._connect()
 
@@ -95,27 +109,26 @@ class Network(Remembering):
     def _outlet(self, requirement: int) -> Sink:
         name, counts = self._bundle.requirements[requirement].name, self.counts
         per_unit = self._plan.base.ticks_per_unit
-        new, found, timed = tuple.__new__, self._found, self._plan.base.kind != "step"
+        new, tell, timed = tuple.__new__, self.found.append, self._timed
+        satisfied, violated = Verdict.SATISFIED, Verdict.VIOLATED
 
         def take(time: int, value: float, _: int) -> None:
             sample = counts[requirement]
             counts[requirement] = sample + 1
             stamp = self._stamp(sample) if timed else time / per_unit
-            verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
-            found.append(new(Known, (sample, stamp, name, shown(value), verdict)))
+            # Ties are shown as 0.
+            if value > TIE:
+                tell(new(Known, (sample, stamp, name, value, satisfied)))
+            else:
+                visible = value if value < -TIE else 0.0
+                tell(new(Known, (sample, stamp, name, visible, satisfied if value > 0 else violated)))
 
         return take
 
     def _stamp(self, sample: int) -> float:
         """Return the time of a sample as it was given."""
-        stamps = self.tape.columns[0]
+        stamps = self.tape.columns[-1]
         return stamps[min(sample - self.tape.base, len(stamps) - 1)]
-
-    def drain(self) -> list[Known]:
-        """Return what has become known."""
-        found = self._found[:]
-        self._found.clear()
-        return found
 
     def trim(self) -> None:
         """Forget what no open sample looks at."""
@@ -125,7 +138,7 @@ class Network(Remembering):
         """Return for each requirement its first open sample, and columns low, high, current from there on."""
         base = self.tape.needed(min(*self.counts, n - 1), self._reach)
         times, columns = self.tape.arrays(base)
-        found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[1:])
+        found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[: len(self._inputs)])
         result = []
         for requirement, first in zip(self._bundle.requirements, self.counts, strict=True):
             values = three(found[requirement.root][first - base :]) if first < n else np.empty((0, 3))
@@ -134,9 +147,9 @@ class Network(Remembering):
 
     def stamps(self, first: int) -> Floats:
         """Return the times of the samples from number `first` on, (n_samples,)."""
-        if self._plan.base.kind == "step":
+        if not self._timed:
             return np.arange(first, self.tape.base + len(self.tape.times), dtype=np.float64)
-        return np.frombuffer(self.tape.columns[0], dtype=np.float64)[first - self.tape.base :].copy()
+        return np.frombuffer(self.tape.columns[-1], dtype=np.float64)[first - self.tape.base :].copy()
 
     def parts(self) -> list[Remembering]:
         """Return the objects that it consists of."""
@@ -190,8 +203,8 @@ def every_program(bundle: BundleData, ends: Ends) -> Program:
     front.write_samples()
     model = Network(bundle, plan)
     part = lines.keep(lambda: Network(bundle, plan))
-    stamp = "0.0" if plan.counted else "clock.shown(T) if time is None else clock.stamp"
-    for slot, name in enumerate([stamp, *(front.value(i) for i in model.inputs)]):
+    stamps = [] if plan.counted else ["clock.shown(T) if time is None else clock.stamp"]
+    for slot, name in enumerate([*(front.value(i) for i in model.inputs), *stamps]):
         lines.add(f"{lines.call(part, _appender(slot))}({name})")
     lines.add(f"{lines.call(part, lambda network: network.tape.times.append)}(T)")
     for index, sinks in model.sinks.items():
@@ -199,7 +212,10 @@ def every_program(bundle: BundleData, ends: Ends) -> Program:
             lines.add(f"{lines.call(part, _inlet(index, slot))}(T, {front.value(index)}, T)")
     lines.add("if not n & 255:")
     lines.add(f"    {lines.call(part, lambda network: network.trim)}()")
-    lines.add(f"return {lines.call(part, lambda network: network.drain)}()")
+    found = lines.call(part, lambda network: network.found)
+    lines.add(f"known = {found}[:]")
+    lines.add(f"{found}.clear()")
+    lines.add("return known")
     return compiled(plan, lines, part)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
-from tests.semantics.online.cases import check_rest, check_start, nested_formula, random_case  # noqa: E402
+from tests.semantics.online.cases import check_rest, check_start, nested_formula, random_case
 
 
 def main(arguments=None):

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
 from stlspec.errors import DataError, UsageError

@@ -1,0 +1,69 @@
+"""One sample at the door: numbers, Booleans, time stamps. How a monitor refuses is in test_monitor.py."""
+
+from decimal import Decimal
+
+import numpy as np
+import pytest
+
+from stlspec.errors import DataError
+from stlspec.semantics.online.samples import Clock, as_boolean, as_real, missing
+from tests.semantics.online.cases import PERIOD, STAMPS, STEP
+
+
+@pytest.mark.parametrize("value", [1, True, np.float32(1), np.int64(1), Decimal(1), np.array(1.0)])
+def test_whatever_is_a_number_is_taken(value):
+    assert as_real("x", value, 0) == 1.0
+
+
+@pytest.mark.parametrize("value", ["1", b"1", 1j, None, [1.0], {}, 10**400])
+def test_whatever_is_none_is_refused(value):
+    with pytest.raises(DataError, match="D806"):
+        as_real("x", value, 0)
+
+
+@pytest.mark.parametrize(("value", "expected"), [(1, True), (0.0, False), (np.True_, True), (False, False)])
+def test_booleans_may_be_numbers(value, expected):
+    assert as_boolean("b", value, 0, "0") is expected
+
+
+@pytest.mark.parametrize(("value", "code"), [(2, "D806"), ("true", "D806"), (None, "D806"), (float("nan"), "D801")])
+def test_other_values_are_no_booleans(value, code):
+    with pytest.raises(DataError, match=code):
+        as_boolean("b", value, 3, "3")
+
+
+def test_a_missing_signal_is_named_with_a_close_one():
+    with pytest.raises(DataError, match="did you mean 'd_obs'"):
+        missing({"d_obs": 1}, ["d_ops"])
+    with pytest.raises(DataError, match="the sample has no signals"):
+        missing({}, ["x"])
+
+
+def run(clock, *times):
+    ticks = []
+    for time in times:
+        ticks.append(clock.read(time))
+        clock.take(ticks[-1], time)
+    return ticks
+
+
+def test_time_is_counted_from_the_first_sample():
+    assert run(Clock(STEP, False), None, None) == [0, 1]
+    assert run(Clock(STEP, False), 7.0, 9.5) == [0, 1]
+    assert run(Clock(PERIOD, False), None, None) == [0, 20]
+    assert run(Clock(PERIOD, False), 5.0, 7.0, 11.0) == [0, 20, 60]
+    assert run(Clock(STAMPS, False), 5.0, 5.3, 9.04) == [0, 3, 40]
+
+
+def test_reading_a_time_does_not_count_it():
+    clock = Clock(STAMPS, False)
+    assert (clock.read(3.0), clock.read(4.0), clock.n) == (0, 0, 0)
+
+
+def test_the_latest_time_is_shown_as_given():
+    clock = Clock(STAMPS, False)
+    run(clock, 5.0, 5.3)
+    assert (clock.begin, clock.latest) == (5.0, 5.3)
+    clock = Clock(PERIOD, False)
+    run(clock, None, None)
+    assert (clock.begin, clock.latest) == (0.0, 2.0)
