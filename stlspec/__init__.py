@@ -41,7 +41,7 @@ _HOMES = {
         "Diagnostic",
         "GateError",
         "InputError",
-    "Monitor",
+        "Monitor",
         "SpecError",
         "StlspecError",
         "UsageError",

@@ -20,6 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.printing import counted
 from stlspec.envs.model import Environment
 from stlspec.formulas import FormulaResult
 from stlspec.learning import Outcome
@@ -155,7 +156,7 @@ def print_reward(reward: RewardMap, file: str, stream: TextIO) -> None:
     worst = min(values)
     console.print(
         Text(
-            f"{file}: {len(values)} states with a reward, from {shown_number(worst)} to {shown_number(best[0])}"
+            f"{file}: {counted(len(values), 'state')} with a reward, from {shown_number(worst)} to {shown_number(best[0])}"
             f" (at {best[1]}), all others 0"
         )
     )
@@ -238,8 +239,8 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
 def _training_lines(outcome: Outcome) -> list[str]:
     training = outcome.training
     lines = [
-        f"{training.episodes:,} episodes, {training.env_steps:,} steps, {training.seconds:.1f} s; "
-        f"{training.hard_violations} hard violations, {training.masked} steps masked"
+        f"{counted(training.episodes, 'episode')}, {counted(training.env_steps, 'step')}, {training.seconds:.1f} s; "
+        f"{counted(training.hard_violations, 'hard violation')}, {counted(training.masked, 'step')} masked"
         + (f" ({training.prefilled} of them known from bad demonstrations)" if training.prefilled else "")
     ]
     if training.env_steps_to_success is not None:

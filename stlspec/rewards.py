@@ -5,7 +5,6 @@ another map of the same size. What a state gets follows from the label of the de
 every rule is a function of its own here, so that the map can be worked out by hand.
 """
 
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import numpy as np
 from stlspec.compiler.bundle import BundleData, Requirement
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.demos import BoundDemonstration, Demonstration
+from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic
 from stlspec.scores import (
@@ -35,9 +35,6 @@ SMALLEST_PENALTY = 0.01
 """What a violation counts at least: next to its bound a robustness is 0, and would penalise nothing."""
 
 _LARGEST_FILE = 64 * 2**20
-
-State = int | tuple[int, int]
-"""A state as files have it: its number, or (row, col) on maps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +234,7 @@ def _ranked(
     if bound.states is None:
         raise DataError([diagnostic("D861", file=file, name=name)])
     if bound.environment is None or not bound.environment.n_states:
-        raise DataError([diagnostic("D875", file=file, name=name)])
+        raise DataError([_numberless(bound)])
     assert score.label is not None
     assert score.reward is not None
     assert score.rank is not None
@@ -251,6 +248,20 @@ def _ranked(
     states = tuple(int(s) for s in bound.states)
     values = demonstration_values(states, score.label, score.reward, violating, penalised)
     return RankedStates(name, bound.environment, states, score.label, score.rank, MappingProxyType(values))
+
+
+def _numberless(bound: BoundDemonstration) -> Diagnostic:
+    """Say why the states of a demonstration have no numbers."""
+    named, file = bound.demonstration.recording.env, bound.demonstration.file
+    reason, way = "no environment says which they are", 'name the environment: --env ID, or "env": {"id": ...} in it'
+    if named is not None and bound.environment is None:
+        shown = str(named.get("id") if isinstance(named, Mapping) else named)[:60]
+        reason = f"its environment '{shown}' cannot be made here, and they mean nothing in another one"
+        way = 'correct or remove "env" in the demonstration'
+    elif bound.environment is not None:
+        reason = f"'{bound.environment.id}' does not number its states"
+        way = "use an environment with discrete states; raw observations cannot be given rewards yet"
+    return diagnostic("D875", file=file, name=bound.name, reason=reason, help=way)
 
 
 def violating_samples(bundle: BundleData, requirement: Requirement, score: RequirementScore) -> list[int]:
@@ -281,43 +292,23 @@ def load_reward(path: str | Path) -> RewardMap:
 
     Raises:  DataError D863: the file is missing, damaged, or of another kind.
     """
-    place = Path(path)
     try:
-        if place.stat().st_size > _LARGEST_FILE:
-            raise _DamageError("the file is larger than any reward map")
-        return _reward_map(json.loads(place.read_text(encoding="utf-8")))
-    except OSError as error:
-        problem = error.strerror or "it cannot be read"
-    except (ValueError, OverflowError, RecursionError) as error:
-        problem = str(error) if isinstance(error, _DamageError) else "it is not JSON in UTF-8"
-    raise DataError([diagnostic("D863", file=str(place), problem=problem)])
+        return _reward_map(read_document(Path(path), SCHEMA, _LARGEST_FILE))
+    except DamageError as error:
+        raise DataError([diagnostic("D863", file=str(path), problem=str(error))]) from None
 
 
-class _DamageError(ValueError):
-    """What is wrong with the document, in the words of D863."""
-
-
-def _reward_map(document: Any) -> RewardMap:
-    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise _DamageError(f"its schema is not {SCHEMA}")
+def _reward_map(document: dict[str, Any]) -> RewardMap:
     meaning, environment = document.get("meaning_sha256"), document.get("env")
     states, values = document.get("states"), document.get("values")
     if not isinstance(meaning, str) or not isinstance(environment, dict):
-        raise _DamageError("'meaning_sha256' or 'env' is missing or of the wrong type")
+        raise DamageError("'meaning_sha256' or 'env' is missing or of the wrong type")
     if not isinstance(states, list) or not isinstance(values, list) or len(states) != len(values):
-        raise _DamageError("'states' and 'values' must be lists of equal length")
-    named = tuple(_checked_state(state) for state in states)
+        raise DamageError("'states' and 'values' must be lists of equal length")
+    named = tuple(read_state(state) for state in states)
     if len(set(named)) < len(named):
-        raise _DamageError("a state occurs twice")
+        raise DamageError("a state occurs twice")
     for value in values:
         if type(value) not in (int, float) or not -1.0 <= value <= 1.0:
-            raise _DamageError(f"{str(value)[:40]} is not a value in [-1, 1]")
+            raise DamageError(f"{str(value)[:40]} is not a value in [-1, 1]")
     return RewardMap(meaning, MappingProxyType(environment), named, tuple(map(float, values)))
-
-
-def _checked_state(value: Any) -> State:
-    if type(value) is int and value >= 0:
-        return value
-    if isinstance(value, list) and len(value) == 2 and all(type(x) is int and x >= 0 for x in value):
-        return (value[0], value[1])
-    raise _DamageError(f"{str(value)[:40]} is not a state: a number or [row, col]")

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "stlspec"
 ORDER = (
-    "source errors lang compiler traces semantics api envs readers demos formulas scores rewards gym learning "
+    "source errors lang compiler traces semantics documents api envs readers demos formulas scores rewards gym learning "
     "paper pictures report tools cli __main__"
 ).split()
 LIGHT = ("numpy", "networkx", "gymnasium", "rich", "typer", "lark", "matplotlib")
@@ -161,7 +161,21 @@ def test_the_public_surface_is_frozen() -> None:
 
     assert len(set(stlspec.__all__)) == len(stlspec.__all__)
     assert set(stlspec.__all__) == {
-        *("Algebra", "BOOLEAN", "Explanation", "MIN_MAX", "Monitor", "log_sum_exp", "Bundle", "BundleError", "DataError", "Demonstration", "Diagnostic", "Evaluation", "GateError"),
+        *(
+            "Algebra",
+            "BOOLEAN",
+            "Explanation",
+            "MIN_MAX",
+            "Monitor",
+            "log_sum_exp",
+            "Bundle",
+            "BundleError",
+            "DataError",
+            "Demonstration",
+            "Diagnostic",
+            "Evaluation",
+            "GateError",
+        ),
         *("InputError", "Outcome", "Policy", "Ranking", "RewardMap", "SpecError", "StlspecError", "UsageError"),
         *("Verdict", "Witness", "__version__", "compile", "infer_reward", "learn", "load"),
         *("load_demonstrations", "load_policy", "load_reward", "make_environment", "score"),

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stlspec import api
+from stlspec import api, rewards
 from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
 from stlspec.errors import DataError
@@ -270,3 +270,11 @@ def test_what_is_no_reward_map_at_all_is_refused(tmp_path, content):
     assert code(caught) == "D863"
     with pytest.raises(DataError):
         load_reward(tmp_path)
+
+
+def test_an_endless_file_is_refused(monkeypatch):
+    monkeypatch.setattr(rewards, "_LARGEST_FILE", 1000)
+    with pytest.raises(DataError) as caught:
+        load_reward("/dev/zero")
+    assert code(caught) == "D863"
+    assert "larger" in str(caught.value)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stlspec.cli.options import FormatOption
-from stlspec.cli.output import Format, counted, print_json
+from stlspec.cli.output import Format, print_json
+from stlspec.compiler.printing import counted
 
 if TYPE_CHECKING:
     from stlspec.tools.conformance import Outcome

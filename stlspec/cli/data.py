@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
-from stlspec.cli.output import Format, ScoreFormat, counted, print_json, warn
+from stlspec.cli.output import Format, ScoreFormat, print_json, warn
+from stlspec.compiler.printing import counted
 from stlspec.errors import GateError, UsageError, diagnostic
 
 if TYPE_CHECKING:

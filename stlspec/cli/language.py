@@ -12,9 +12,10 @@ from typing import Annotated
 import typer
 
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
-from stlspec.cli.output import Format, GraphFormat, counted, error_document, print_diagnostics, print_json
+from stlspec.cli.output import Format, GraphFormat, error_document, print_diagnostics, print_json
 from stlspec.compiler import bundle_file, files
 from stlspec.compiler.compiling import check_source
+from stlspec.compiler.printing import counted
 from stlspec.errors import CATALOGUE, Diagnostic, InputError, UsageError, diagnostic
 
 

@@ -83,8 +83,3 @@ def error_document(exit_code: int, diagnostics: Sequence[Diagnostic]) -> dict[st
         "exit": exit_code,
         "diagnostics": [d.to_json() for d in diagnostics],
     }
-
-
-def counted(count: int, noun: str) -> str:
-    """Return "1 error", "2 errors"."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -26,6 +26,11 @@ def number_text(value: float) -> str:
     return text.removesuffix(".0")
 
 
+def counted(count: int, noun: str) -> str:
+    """Return "1 error", "2 errors". Not in the paper: it serves the messages."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
 def expression_text(nodes: Sequence[Node], root: int) -> str:
     """Return a real expression, a predicate or a Boolean signal as the user would write it.
 

@@ -100,7 +100,7 @@ def notes(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...]:
     """Say what bad demonstrations did, since the reward does not show it. Not in the paper: the report."""
     if not evidence.bad:
         return ()
-    count = f"{evidence.bad} bad demonstration{'s' if evidence.bad > 1 else ''}"
+    count = f"{evidence.bad} bad demonstration{'' if evidence.bad == 1 else 's'}"
     if method == "paper" or not mask:
         through = "the reward map" if method == "paper" else "the pictures"
         return (f"{count}: no mask, so only {through} can show what went wrong",)

@@ -1,16 +1,19 @@
 """Pictures of a run: the reward on the map, and the learning curve. The one module that imports matplotlib.
 
 In: tables over states and the log. Out: PNG files, or text where matplotlib is not installed. Figures are
-made without pyplot, so that no global state of the host program changes.
+made without pyplot, so that no global state of the host program changes. What is drawn for each cell on its
+own (values, grid lines, ticks) is drawn on small maps only, so that a large one costs no more than an image.
 """
 
 import math
+import textwrap
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -20,6 +23,11 @@ _INK, _MUTED, _PATH, _OBSTACLE = "#1b1f24", "#6b7480", "#e07a1f", "#3a4048"
 _OUTCOME_COLOURS = {GOAL: "#2e8b57", VIOLATION: "#c0392b", LIMIT: "#9aa3ad", TERMINAL: "#7d5ba6"}
 _OUTCOME_NAMES = {GOAL: "goal", VIOLATION: "violation", LIMIT: "step limit", TERMINAL: "terminal state"}
 _ANNOTATED_UP_TO = 12
+_TITLE_POINTS, _TITLE_LINES = 11, 3
+_STRETCHED_FROM = 20
+"""Maps that are so many times longer than wide fill the picture; square cells would be a hairline."""
+
+Target = Path | IO[bytes]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,19 +68,38 @@ def reward_text(scene: Scene) -> str:
     return "\n".join([scene.title, "", *rows, "", legend]) + "\n"
 
 
-def draw_reward(scene: Scene, place: Path) -> None:
+def draw_reward(scene: Scene, place: Target) -> None:
     """Write a heat-map of the reward, on the map where there is one.
 
     Paper: figures 3 and 5 to 8, rewards left and the policy right; here in one picture.
     """
+    _save(reward_figure(scene), place, 130)
+
+
+def reward_figure(scene: Scene) -> Any:
+    """Make the figure that `draw_reward` writes. Paper: see there. Returns: a matplotlib figure."""
     figure = _figure(scene)
     axes = figure.add_subplot()
     if scene.n_columns is None:
         _draw_bars(axes, scene)
     else:
         _draw_cells(figure, axes, scene, scene.n_columns)
-    axes.set_title(scene.title, color=_INK, fontsize=11, pad=10)
-    figure.savefig(place, dpi=130)
+    _write_title(figure, scene.title)
+    return figure
+
+
+def _write_title(figure: Any, title: str) -> None:
+    """Write a title that stays inside the figure; its text is the user's, so it is never read as a formula."""
+    width = int(figure.get_figwidth() * 72 / (0.65 * _TITLE_POINTS))
+    lines = textwrap.wrap(title, width, max_lines=_TITLE_LINES, placeholder=" ...")
+    figure.suptitle("\n".join(lines), color=_INK, fontsize=_TITLE_POINTS, parse_math=False)
+
+
+def _save(figure: Any, place: Target, dpi: int) -> None:
+    with warnings.catch_warnings():
+        # a character that the font lacks is drawn as a box, which is no news for the user
+        warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
+        figure.savefig(place, dpi=dpi, format="png")
 
 
 def _figure(scene: Scene) -> Any:
@@ -89,31 +116,49 @@ def _figure(scene: Scene) -> Any:
 def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
     values = np.array(scene.values).reshape(-1, n_columns)
     limit = max(1e-12, float(np.abs(values).max()))
-    image = axes.imshow(values, cmap="RdBu", vmin=-1.5 * limit, vmax=1.5 * limit)
+    n_rows = len(values)
+    stretched = max(n_rows, n_columns) >= _STRETCHED_FROM * min(n_rows, n_columns)
+    aspect = "auto" if stretched else "equal"
+    image = axes.imshow(values, cmap="RdBu", vmin=-1.5 * limit, vmax=1.5 * limit, aspect=aspect)
     image.set_clim(-limit, limit)
     bar = figure.colorbar(image, ax=axes, shrink=0.85, pad=0.03)
     bar.set_label("reward R(s)", color=_INK)
     bar.outline.set_visible(False)
-    n_rows = len(values)
+    obstacles = np.array(scene.endings).reshape(-1, n_columns) == VIOLATION
     if max(n_rows, n_columns) <= _ANNOTATED_UP_TO:
         _write_values(axes, values, limit)
-    for state, ending in enumerate(scene.endings):
-        row, column = divmod(state, n_columns)
-        if ending == VIOLATION:
+        for row, column in np.argwhere(obstacles).tolist():
             _draw_obstacle(axes, row, column)
+        _draw_grid(axes, n_rows, n_columns)
+    else:
+        _draw_layer(axes, obstacles, aspect)
     rows, columns = np.divmod(np.array(scene.path), n_columns)
     axes.plot(columns, rows, color="white", linewidth=5, solid_capstyle="round", alpha=0.9, zorder=3)
     axes.plot(columns, rows, color=_PATH, linewidth=2.5, solid_capstyle="round", zorder=4)
     _mark_ends(axes, scene, n_columns)
+    axes.tick_params(which="both", length=0, colors=_MUTED, labelsize=8)
+    axes.set_xlabel("column", color=_MUTED)
+    axes.set_ylabel("row", color=_MUTED)
+    axes.spines[:].set_visible(False)
+
+
+def _draw_grid(axes: Any, n_rows: int, n_columns: int) -> None:
     axes.set_xticks(range(n_columns), minor=False)
     axes.set_yticks(range(n_rows), minor=False)
     axes.set_xticks(np.arange(n_columns + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(n_rows + 1) - 0.5, minor=True)
     axes.grid(which="minor", color="#d5d9de", linewidth=0.8)
-    axes.tick_params(which="both", length=0, colors=_MUTED, labelsize=8)
-    axes.set_xlabel("column", color=_MUTED)
-    axes.set_ylabel("row", color=_MUTED)
-    axes.spines[:].set_visible(False)
+
+
+def _draw_layer(axes: Any, obstacles: Any, aspect: str) -> None:
+    """Draw all obstacles as one image above the values, and ticks at whole numbers only."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.ticker import MaxNLocator
+
+    layer = np.ma.masked_where(~obstacles, np.ones(obstacles.shape))
+    axes.imshow(layer, cmap=ListedColormap([_OBSTACLE]), aspect=aspect, zorder=2)
+    for axis, count in ((axes.xaxis, obstacles.shape[1]), (axes.yaxis, obstacles.shape[0])):
+        axis.set_major_locator(MaxNLocator(nbins=min(9, count), integer=True, min_n_ticks=1))
 
 
 def _write_values(axes: Any, values: Any, limit: float) -> None:
@@ -138,24 +183,24 @@ def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
         rows, columns = zip(*goals, strict=True)
         axes.plot(columns, rows, marker="*", markersize=18, color="#f2b705", label="goal", **style)
     handles, _ = axes.get_legend_handles_labels()
-    handles += _legend_extras()
+    handles += _legend_extras(has_path=len(scene.path) > 1)
     style = {"loc": "outside lower center", "ncols": 4, "frameon": False, "fontsize": 8, "labelcolor": _INK}
     axes.figure.legend(handles=handles, handletextpad=0.5, columnspacing=1.4, **style)
 
 
-def _legend_extras() -> list[Any]:
+def _legend_extras(*, has_path: bool) -> list[Any]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    return [
-        Line2D([], [], color=_PATH, linewidth=2.5, label="learned path"),
-        Patch(color=_OBSTACLE, linewidth=0, label="violates a hard requirement"),
-    ]
+    path = [Line2D([], [], color=_PATH, linewidth=2.5, label="learned path")] if has_path else []
+    return [*path, Patch(color=_OBSTACLE, linewidth=0, label="violates a hard requirement")]
 
 
 def _draw_bars(axes: Any, scene: Scene) -> None:
-    colours = ["#2b6cb0" if value >= 0 else "#c0392b" for value in scene.values]
-    axes.bar(range(len(scene.values)), scene.values, color=colours, width=1.0)
+    values = np.array(scene.values)
+    edges = np.arange(len(values) + 1) - 0.5
+    axes.stairs(np.maximum(values, 0), edges, fill=True, color="#2b6cb0")
+    axes.stairs(np.minimum(values, 0), edges, fill=True, color="#c0392b")
     axes.set_xlabel("state", color=_MUTED)
     axes.set_ylabel("reward R(s)", color=_MUTED)
     axes.spines[["top", "right"]].set_visible(False)
@@ -166,14 +211,14 @@ def draw_curve(
     endings: Sequence[int],
     first_success: int | None,
     title: str,
-    place: Path,
+    place: Target,
 ) -> None:
     """Write the learning curve: how episodes end, and how many steps they take.
 
     Paper: figure 4, steps per training episode; the share of outcomes is ours.
 
     Args:    steps, endings: the log, (n_episodes,). first_success: the episode of the first greedy check from
-             which on all succeed. title: shown above. place: the PNG file.
+             which on all succeed. title: shown above. place: the PNG file, or a stream of bytes.
     """
     from matplotlib.figure import Figure
 
@@ -209,11 +254,12 @@ def draw_curve(
     bottom.set_xscale("log")
     bottom.xaxis.set_major_formatter("{x:.0f}")
     bottom.set_xlim(1, max(2, len(steps)))
-    _finish_curve(top, bottom, first_success, title)
-    figure.savefig(place, dpi=150)
+    _finish_curve(top, bottom, first_success)
+    _write_title(figure, title)
+    _save(figure, place, 150)
 
 
-def _finish_curve(top: Any, bottom: Any, first_success: int | None, title: str) -> None:
+def _finish_curve(top: Any, bottom: Any, first_success: int | None) -> None:
     for axes in (top, bottom):
         axes.spines[["top", "right"]].set_visible(False)
         axes.tick_params(colors=_MUTED, labelsize=8)
@@ -221,6 +267,5 @@ def _finish_curve(top: Any, bottom: Any, first_success: int | None, title: str) 
             axes.axvline(first_success, color=_PATH, linewidth=1.5, linestyle="--")
     if first_success is not None:
         top.plot([], [], color=_PATH, linestyle="--", label=f"success from episode {first_success} on")
-    top.set_title(title, color=_INK, fontsize=11, pad=8)
     top.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="best")
     bottom.legend(framealpha=0.9, edgecolor="white", fontsize=8, labelcolor=_INK, loc="center right")

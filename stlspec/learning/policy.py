@@ -5,7 +5,6 @@ an observation of the environment as gymnasium gives it. A policy file is data: 
 carries the names of its states, so that acting needs neither the spec nor the environment.
 """
 
-import json
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -14,15 +13,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.errors import DataError, diagnostic
 from stlspec.learning.shaping import RUNS
 
 SCHEMA = "stlspec.policy/1"
 FILE = "policy.json"
 _LARGEST_FILE = 256 * 2**20
-
-State = int | tuple[int, int]
-"""A state as files have it: its number, or (row, col) on maps."""
 
 
 def greedy_action(values: Sequence[float]) -> int:
@@ -134,33 +131,21 @@ def load_policy(path: str | Path) -> Policy:
     if place.is_dir():
         place = place / FILE
     try:
-        if place.stat().st_size > _LARGEST_FILE:
-            raise _DamageError("the file is larger than any policy")
-        document = json.loads(place.read_text(encoding="utf-8"))
-        return _policy(document)
-    except OSError as error:
-        problem = error.strerror or "it cannot be read"
-    except (ValueError, OverflowError, RecursionError) as error:
-        problem = str(error) if isinstance(error, _DamageError) else "it is not JSON in UTF-8"
-    raise DataError([diagnostic("D873", file=str(place), problem=problem)])
+        return _policy(read_document(place, SCHEMA, _LARGEST_FILE))
+    except DamageError as error:
+        raise DataError([diagnostic("D873", file=str(place), problem=str(error))]) from None
 
 
-class _DamageError(ValueError):
-    """What is wrong with the document, in the words of D873."""
-
-
-def _policy(document: Any) -> Policy:
-    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise _DamageError(f"its schema is not {SCHEMA}")
+def _policy(document: dict[str, Any]) -> Policy:
     environment, n_actions = document.get("env"), document.get("n_actions")
     if not isinstance(environment, dict) or type(n_actions) is not int or n_actions < 1:
-        raise _DamageError("'env' or 'n_actions' is missing or of the wrong type")
+        raise DamageError("'env' or 'n_actions' is missing or of the wrong type")
     states, actions, q = (_list(document, key) for key in ("states", "actions", "q"))
     if not len(states) == len(actions) == len(q):
-        raise _DamageError("'states', 'actions' and 'q' differ in length")
-    named = tuple(_state(x) for x in states)
+        raise DamageError("'states', 'actions' and 'q' differ in length")
+    named = tuple(read_state(x) for x in states)
     if len(set(named)) < len(named):
-        raise _DamageError("a state occurs twice")
+        raise DamageError("a state occurs twice")
     return Policy(
         MappingProxyType(environment),
         n_actions,
@@ -173,29 +158,24 @@ def _policy(document: Any) -> Policy:
 def _list(document: dict[str, Any], key: str) -> list[Any]:
     value = document.get(key)
     if not isinstance(value, list) or not value:
-        raise _DamageError(f"'{key}' must be a list that is not empty")
+        raise DamageError(f"'{key}' must be a list that is not empty")
     return value
-
-
-def _state(value: Any) -> State:
-    if type(value) is int and value >= 0:
-        return value
-    if isinstance(value, list) and len(value) == 2 and all(type(x) is int and x >= 0 for x in value):
-        return (value[0], value[1])
-    raise _DamageError(f"{str(value)[:40]!r} is not a state: a number or [row, col]")
 
 
 def _action(value: Any, n_actions: int) -> int:
     if type(value) is int and 0 <= value < n_actions:
         return value
-    raise _DamageError(f"{str(value)[:40]!r} is not an action from 0 to {n_actions - 1}")
+    raise DamageError(f"{str(value)[:40]!r} is not an action from 0 to {n_actions - 1}")
 
 
 def _values(row: Any, n_actions: int) -> tuple[float, ...]:
     if not isinstance(row, list) or len(row) != n_actions:
-        raise _DamageError(f"a row of 'q' does not have {n_actions} values")
+        raise DamageError(f"a row of 'q' does not have {n_actions} values")
     named = {"inf": inf, "-inf": -inf}
     values = [named.get(x, x) if isinstance(x, str) else x for x in row]
-    if not all(type(x) in (int, float) and x == x for x in values):
-        raise _DamageError("a value of 'q' is not a number")
-    return tuple(map(float, values))
+    try:
+        if all(type(x) in (int, float) and x == x for x in values):
+            return tuple(map(float, values))
+    except OverflowError:
+        pass  # an integer beyond every float
+    raise DamageError("a value of 'q' is not a number")

@@ -6,11 +6,13 @@ outcome alone, so two equal runs write equal files, but for the seconds in resul
 
 from collections.abc import Callable
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.envs.model import Environment
+from stlspec.errors import Diagnostic, diagnostic
 from stlspec.learning import plots, storage
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.policy import FILE as POLICY
@@ -25,11 +27,11 @@ def publish(outcome: Outcome, task: Task, environment: Environment, bundle: Bund
     Not in the paper: the output of the command.
 
     Args:    directory: as `storage.claim` returned it.
-    Returns: the outcome with `files` filled in.
+    Returns: the outcome with `files` filled in, and a warning D877 for each picture that could not be drawn.
     Raises:  UsageError D872: the directory cannot be written.
     """
     scene = plots.Scene(
-        title=f"{bundle.title or bundle.name}: reward and learned path ({outcome.method})",
+        title=_title(bundle, f"reward and learned path ({outcome.method})"),
         values=outcome.reward.table(environment),
         endings=task.endings,
         start=task.start,
@@ -37,30 +39,55 @@ def publish(outcome: Outcome, task: Task, environment: Environment, bundle: Bund
         n_columns=environment.n_columns,
     )
     named = {"result": storage.RESULT, "policy": POLICY, "reward": "reward.json", "log": "episodes.csv"}
-    if plots.available():
-        named |= {"reward_map": "reward.png", "curve": "curve.png"}
-    else:
-        named["reward_map"] = "reward.txt"
-    outcome = replace(outcome, files=MappingProxyType(named))
+    pictures, warnings = _pictures(outcome, scene, bundle) if plots.available() else ({}, ())
+    if "reward_map" not in pictures:
+        pictures["reward_map"] = ("reward.txt", plots.reward_text(scene).encode())
+    named |= {kind: name for kind, (name, _) in pictures.items()}
+    outcome = replace(outcome, files=MappingProxyType(named), warnings=(*outcome.warnings, *warnings))
     writers: dict[str, Writer] = {
         named["result"]: _text(storage.dumps(outcome.to_json())),
         named["policy"]: _text(storage.dumps(outcome.policy.to_json())),
         named["reward"]: _text(storage.dumps(outcome.reward.to_json())),
         named["log"]: _text(outcome.log.to_csv()),
-        named["reward_map"]: _text(plots.reward_text(scene)),
     }
-    if "curve" in named:
-        writers[named["reward_map"]] = lambda place: plots.draw_reward(scene, place)
-        writers[named["curve"]] = lambda place: _draw_curve(outcome, bundle, place)
+    writers |= {name: _bytes(data) for name, data in pictures.values()}
     storage.publish(directory, writers)
     return outcome
 
 
-def _text(text: str) -> Writer:
-    return lambda place: place.write_text(text, encoding="utf-8", newline="\n")
+Pictures = dict[str, tuple[str, bytes]]
+"""For each kind of picture its file and what is in it."""
 
 
-def _draw_curve(outcome: Outcome, bundle: BundleData, place: Path) -> None:
-    title = f"{bundle.title or bundle.name}: training ({outcome.method}, seed {outcome.seed})"
+def _pictures(outcome: Outcome, scene: plots.Scene, bundle: BundleData) -> tuple[Pictures, tuple[Diagnostic, ...]]:
+    """Draw what can be drawn, before any file is written; what cannot be drawn becomes a warning."""
+    title = _title(bundle, f"training ({outcome.method}, seed {outcome.seed})")
     log, first = outcome.log, outcome.training.episodes_to_success
-    plots.draw_curve(log.steps, log.endings, first, title, place)
+    drawers: dict[str, tuple[str, Callable[[BytesIO], None]]] = {
+        "reward_map": ("reward.png", lambda stream: plots.draw_reward(scene, stream)),
+        "curve": ("curve.png", lambda stream: plots.draw_curve(log.steps, log.endings, first, title, stream)),
+    }
+    drawn, warnings = Pictures(), []
+    for kind, (name, draw) in drawers.items():
+        stream = BytesIO()
+        try:
+            draw(stream)
+        except Exception as error:
+            # a picture is never worth the run: matplotlib may fail by its fonts, its settings, its memory
+            problem = " ".join(f"{type(error).__name__}: {error}".split())[:200]
+            warnings.append(diagnostic("D877", picture=name, problem=problem))
+        else:
+            drawn[kind] = (name, stream.getvalue())
+    return drawn, tuple(warnings)
+
+
+def _title(bundle: BundleData, what: str) -> str:
+    return ": ".join(filter(None, [bundle.title or bundle.name, what]))
+
+
+def _text(text: str) -> Writer:
+    return _bytes(text.encode("utf-8"))
+
+
+def _bytes(data: bytes) -> Writer:
+    return lambda place: place.write_bytes(data)

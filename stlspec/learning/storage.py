@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from stlspec.documents import DamageError, read_document
 from stlspec.errors import UsageError, diagnostic
 
 RESULT = "result.json"
@@ -65,14 +66,9 @@ def partial_directory(path: Path) -> Path:
 
 def _is_run(path: Path) -> bool:
     """Tell whether a directory holds an earlier run and nothing else: only that may be replaced."""
-    result = path / RESULT
     try:
-        if result.stat().st_size > _LARGEST_RESULT:
-            return False
-        document = json.loads(result.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return False
-    if not isinstance(document, dict) or document.get("schema") != RESULT_SCHEMA:
+        document = read_document(path / RESULT, RESULT_SCHEMA, _LARGEST_RESULT)
+    except DamageError:
         return False
     files = document.get("files")
     names = set(map(str, files.values())) if isinstance(files, dict) else set()
@@ -141,11 +137,7 @@ def load_checkpoint(out: Path, fingerprint: str) -> dict[str, Any] | None:
     """Return the state of an unfinished run with the same settings; None if there is none that is sound."""
     place = partial_directory(out) / "checkpoint.json"
     try:
-        if place.stat().st_size > _LARGEST_CHECKPOINT:
-            return None
-        document = json.loads(place.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    if not isinstance(document, dict) or document.get("schema") != CHECKPOINT_SCHEMA:
+        document = read_document(place, CHECKPOINT_SCHEMA, _LARGEST_CHECKPOINT)
+    except DamageError:
         return None
     return document if document.get("fingerprint") == fingerprint else None

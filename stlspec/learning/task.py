@@ -151,8 +151,11 @@ def make_task(bundle: BundleData, environment: Environment) -> Task:
     Args:    bundle: the compiled spec. environment: with deterministic transitions over numbered states.
     Returns: the task.
     Raises:  UsageError D866, D867: no goal, or several; D868: a hard requirement with memory;
-             D869: transitions are not known to be deterministic; D870: a signal is not offered.
+             D869: transitions are not known to be deterministic; D870: a signal is not offered;
+             D876: the spec measures stamps.
     """
+    if bundle.time.kind == "stamps":
+        raise UsageError([diagnostic("D876", file=bundle.sources[0][0] if bundle.sources else None)])
     transitions = deterministic_transitions(environment)
     goals = find_goals(bundle)
     if not goals:
@@ -226,7 +229,6 @@ def tabulate(
         bundle.time,
         bundle.signals,
         {name: columns[source] for name, source in offered.items()} or {"": np.zeros(environment.n_states)},
-        np.arange(environment.n_states) if bundle.time.kind == "stamps" else None,
         required=needed,
         file=f"the states of {environment.id}",
     )
@@ -241,7 +243,7 @@ def tabulate(
 def signal_sources(bundle: BundleData, needed: set[str], environment: Environment) -> dict[str, str]:
     """Find what the environment calls each signal: by `from "NAME"`, else by the signal's own name.
 
-    Not in the paper: names.
+    Not in the paper: names. Where a spec says `from`, its own name counts for nothing, as when data are scored.
 
     Raises:  UsageError D870: it does not offer one of them.
     """
@@ -249,12 +251,13 @@ def signal_sources(bundle: BundleData, needed: set[str], environment: Environmen
     for signal in bundle.signals:
         if signal.name not in needed:
             continue
-        names = [name for name in (signal.source, signal.name) if name in environment.signal_names]
-        if not names:
+        source = signal.source or signal.name
+        if source not in environment.signal_names:
             offered = ", ".join(environment.signal_names) or "no signals"
-            user = f"spec '{bundle.name}'"
-            raise UsageError([diagnostic("D870", env=environment.id, signal=signal.name, user=user, offered=offered)])
-        found[signal.name] = str(names[0])
+            spec = f"spec '{bundle.name}'" if bundle.name else "the spec"
+            user = f"signal '{signal.name}' of {spec}" if signal.source else spec
+            raise UsageError([diagnostic("D870", env=environment.id, signal=source, user=user, offered=offered)])
+        found[signal.name] = source
     return found
 
 

@@ -66,7 +66,7 @@ def learn(
              were made that do not say so. out: directory for the results; an interrupted run resumes.
              progress: called between chunks of episodes.
     Returns: the outcome; `success` says whether the greedy path meets every requirement.
-    Raises:  UsageError: D866 to D872; DataError: a demonstration or the reward cannot be used.
+    Raises:  UsageError: D866 to D872, D876; DataError: a demonstration or the reward cannot be used.
     """
     settings = make_settings(
         environment, method=method, episodes=episodes, seed=seed, max_steps=max_steps, gamma=gamma,

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from stlspec.cli.output import counted, error_document, print_diagnostics, print_json
+from stlspec.cli.output import error_document, print_diagnostics, print_json
 from stlspec.errors import diagnostic
 
 PROBLEM = diagnostic("N107", file="x.stl", name="T", help="the params of this spec: none")
@@ -38,8 +38,3 @@ def test_json_is_one_document_without_nan(capsys: pytest.CaptureFixture[str]) ->
     assert json.loads(capsys.readouterr().out) == {"ä": 1}
     with pytest.raises(ValueError, match="JSON"):
         print_json(float("nan"))
-
-
-@pytest.mark.parametrize(("count", "text"), [(0, "0 errors"), (1, "1 error"), (2, "2 errors")])
-def test_nouns_agree_with_their_number(count: int, text: str) -> None:
-    assert counted(count, "error") == text

@@ -100,3 +100,9 @@ def test_a_given_time_in_another_unit_is_rounded_once():
     text = "time s\nparam T = 8 s\nparam U = 8 ms\nhard a: now <= T or now <= U"
     for n in range(1, 2000):
         assert compiled({"T": f"{n} ms", "U": f"{n / 1000!r} s"}, text) == {"T": (n / 1000, "s"), "U": (n, "ms")}
+
+
+def test_the_way_out_of_a_bad_value_is_a_number_without_a_unit():
+    with pytest.raises(InputError) as caught:
+        compiled({"level": "3 s", "open": 0})
+    assert "-p level=12;" in caught.value.diagnostics[0].help

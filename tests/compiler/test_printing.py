@@ -3,7 +3,7 @@
 import pytest
 
 from stlspec.compiler.ir import Builder
-from stlspec.compiler.printing import LONGEST, expression_text, number_text
+from stlspec.compiler.printing import LONGEST, counted, expression_text, number_text
 
 
 @pytest.mark.parametrize(
@@ -64,3 +64,8 @@ def test_a_shared_expression_is_cut_off_instead_of_growing_exponentially():
     text = expression_text(builder.nodes, node)
     assert len(text) == LONGEST
     assert text.endswith("…")
+
+
+@pytest.mark.parametrize(("count", "text"), [(0, "0 errors"), (1, "1 error"), (2, "2 errors")])
+def test_nouns_agree_with_their_number(count: int, text: str) -> None:
+    assert counted(count, "error") == text

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from stlspec.demos import make_demonstration
+from stlspec.errors import DataError
 from stlspec.learning.evidence import gather, notes, violating_pairs
 from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
 from stlspec.learning.task import Task, make_task
@@ -67,3 +69,19 @@ def test_the_report_says_what_bad_demonstrations_did(small):
     assert "only the pictures" in notes(evidence, "shaped", False)[0]
     assert "only the reward map" in notes(evidence, "paper", False)[0]
     assert notes(replace(evidence, bad=0), "shaped", True) == ()
+
+
+def test_a_demonstration_of_an_environment_that_cannot_be_made_is_not_taken_for_one_of_this_map(small):
+    states = [[4, 0], [4, 1], [4, 2]]
+    lost = make_demonstration("lost", {"d_obs": [1, 0, 1], "d_goal": [8, 7, 6]}, states=states, env={"id": "No-v9"})
+    for reward in (None, infer_reward(small[0], small[2], small[1])):
+        with pytest.raises(DataError) as caught:
+            gathered(small, demonstrations=[lost], reward=reward)
+        (found,) = caught.value.diagnostics
+        assert found.code == "D875"
+        assert "'No-v9' cannot be made here" in found.message
+
+
+def test_one_bad_demonstration_and_one_step_are_told_in_the_singular(small):
+    evidence = replace(gathered(small), violating=((20, 2),), bad=1)
+    assert notes(evidence, "shaped", True)[0].startswith("1 bad demonstration: 1 step forbidden")

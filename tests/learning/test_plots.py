@@ -1,11 +1,13 @@
 """Pictures: the files are pictures, and the text says the same."""
 
 import sys
+import warnings
+from dataclasses import replace
 
 import pytest
 
 from stlspec.learning import plots
-from stlspec.learning.plots import Scene, draw_curve, draw_reward, reward_text
+from stlspec.learning.plots import Scene, draw_curve, draw_reward, reward_figure, reward_text
 from stlspec.learning.shaping import GOAL, LIMIT, RUNS, TERMINAL, VIOLATION
 
 GRID = Scene("a title", (0.25, 0.0, -0.5, 1.0), (RUNS, VIOLATION, VIOLATION, GOAL), 0, (0, 3), 2)
@@ -45,3 +47,56 @@ def test_no_global_state_of_matplotlib_is_touched(tmp_path):
 def test_whether_matplotlib_is_there_is_found_out_without_importing_it(monkeypatch):
     monkeypatch.setattr(plots, "find_spec", lambda name: None)
     assert not plots.available()
+
+
+LONG = "A title that someone wrote as a whole sentence, with $x_1 and $50 and W" + "W" * 300
+
+
+@pytest.mark.parametrize("scene", [GRID, ROW, Scene("", (0.0,) * 400, (RUNS,) * 400, 0, (0,), 20)])
+@pytest.mark.parametrize("title", [LONG, "costs $5", "$\\frac{$", "$" * 40, "", "\u8def\u5f84"])
+def test_any_title_is_drawn_as_it_is_and_inside_the_picture(scene, title):
+    pytest.importorskip("matplotlib")
+    figure = reward_figure(replace(scene, title=title))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a glyph that the font lacks
+        figure.draw_without_rendering()
+    (text,) = figure.texts
+    box = text.get_window_extent()
+    assert text.get_text().replace("\n", " ").startswith(title[:20])
+    assert not text.get_parse_math()
+    if title and title != LONG:
+        assert box.x0 >= 0 and box.x1 <= figure.bbox.width
+    if title == LONG:
+        assert text.get_text().count("\n") == 2
+
+
+def test_the_title_of_a_curve_is_no_formula(tmp_path):
+    pytest.importorskip("matplotlib")
+    draw_curve([3, 2], [GOAL, GOAL], 1, "$\\frac{$ \u8def", tmp_path / "c.png")
+
+
+def test_a_large_map_is_drawn_with_few_objects():
+    """20,000 cells in a row, every third an obstacle: one patch or tick each would take minutes."""
+    pytest.importorskip("matplotlib")
+    count = 20_000
+    endings = tuple(VIOLATION if k % 3 == 2 else RUNS for k in range(count))
+    for n_columns in (count, 1, 200, None):
+        figure = reward_figure(Scene("t", (0.5,) * count, endings, 0, (0, 1), n_columns))
+        figure.draw_without_rendering()
+        axes = figure.axes[0]
+        assert len(axes.patches) + len(axes.lines) + len(axes.images) + len(axes.texts) < 12
+        assert len(axes.get_xticks()) + len(axes.get_yticks()) < 60
+
+
+def test_a_small_map_keeps_a_tick_for_each_cell():
+    pytest.importorskip("matplotlib")
+    axes = reward_figure(GRID).axes[0]
+    assert list(axes.get_xticks()) == [0, 1]
+    assert len(axes.patches) == 2  # the obstacles
+
+
+@pytest.mark.parametrize(("path", "named"), [((0,), False), ((0, 3), True)])
+def test_the_legend_names_a_learned_path_where_there_is_one(path, named):
+    pytest.importorskip("matplotlib")
+    (legend,) = reward_figure(replace(GRID, path=path)).legends
+    assert ("learned path" in [text.get_text() for text in legend.get_texts()]) == named

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from stlspec.errors import DataError
+from stlspec.learning import policy
 from stlspec.learning.policy import Policy, greedy_action, greedy_path, load_policy
 from stlspec.learning.shaping import GOAL, RUNS
 
@@ -112,3 +113,12 @@ def test_a_missing_policy_is_refused(tmp_path):
     with pytest.raises(DataError) as caught:
         load_policy(tmp_path)
     assert code(caught) == "D873"
+
+
+def test_an_endless_file_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(policy, "_LARGEST_FILE", 1000)
+    (tmp_path / "policy.json").symlink_to("/dev/zero")
+    with pytest.raises(DataError) as caught:
+        load_policy(tmp_path)
+    assert code(caught) == "D873"
+    assert "larger" in str(caught.value)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -42,3 +43,28 @@ def test_without_matplotlib_there_is_text_instead_of_pictures(small, tmp_path, m
     assert outcome.files["reward_map"] == "reward.txt"
     assert "curve" not in outcome.files
     assert "S start" in (tmp_path / "out" / "reward.txt").read_text()
+
+
+def test_a_picture_that_fails_is_a_warning_and_the_run_is_kept(small, tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+
+    def fail(*given):
+        raise ValueError("no font\nanywhere")
+
+    monkeypatch.setattr(plots, "draw_reward", fail)
+    bundle, world, demos = small
+    outcome = learn(bundle, world, demos, episodes=30, out=tmp_path / "out")
+    (warning,) = outcome.warnings
+    assert warning.code == "D877"
+    assert "reward.png could not be drawn: ValueError: no font anywhere" in warning.message
+    assert outcome.files["reward_map"] == "reward.txt"
+    assert sorted(outcome.files.values()) == sorted(p.name for p in (tmp_path / "out").iterdir())
+    assert load_policy(tmp_path / "out") == outcome.policy
+
+
+def test_a_title_with_dollar_signs_costs_no_picture(small, tmp_path):
+    pytest.importorskip("matplotlib")
+    bundle, world, demos = small
+    outcome = learn(replace(bundle, title="$x_1 costs $5 \\frac{"), world, demos, episodes=30, out=tmp_path / "out")
+    assert outcome.warnings == ()
+    assert {"reward.png", "curve.png"} <= {p.name for p in (tmp_path / "out").iterdir()}

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from stlspec.errors import UsageError
+from stlspec.learning import storage
 from stlspec.learning.storage import claim, discard, dumps, load_checkpoint, publish, save_checkpoint
 
 RESULT = {"schema": "stlspec.learn/1", "n": 1, "files": {"result": "result.json", "old": "old.txt"}}
@@ -135,3 +136,18 @@ def test_foreign_files_beside_a_checkpoint_stay(tmp_path):
 def test_numbers_that_json_cannot_hold_are_a_programming_error():
     with pytest.raises(ValueError, match="JSON"):
         dumps(float("inf"))
+
+
+def test_endless_files_are_read_up_to_a_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr(storage, "_LARGEST_RESULT", 1000)
+    monkeypatch.setattr(storage, "_LARGEST_CHECKPOINT", 1000)
+    out = claim(tmp_path / "out")
+    save_checkpoint(out, "a", {})
+    (tmp_path / "out.partial" / "checkpoint.json").unlink()
+    (tmp_path / "out.partial" / "checkpoint.json").symlink_to("/dev/zero")
+    assert load_checkpoint(out, "a") is None
+    out.mkdir()
+    (out / "result.json").symlink_to("/dev/zero")
+    with pytest.raises(UsageError) as caught:
+        claim(out)
+    assert code(caught) == "D872"

@@ -180,3 +180,27 @@ def test_chance_is_refused_with_the_way_out():
 def test_an_environment_without_a_deterministic_table_is_refused(fields):
     world = Environment("x", MappingProxyType({}), signal_names=("d_goal",), **fields)
     assert code_of(SOFT, world)[0] == "D869"
+
+
+@pytest.mark.parametrize("source", ["obs[1]", "d_obstacle"])
+def test_a_declared_source_is_never_replaced_by_a_signal_of_the_same_name(source):
+    """Scoring reads obs[1]; learning on the environment's own d_obs would report success for another spec."""
+    spec = f'signal d_obs from "{source}"\nsignal d_goal\nhard avoid: always (d_obs >= 1)\n'
+    with pytest.raises(UsageError) as caught:
+        make_task(api.compile(spec + "soft g depends on avoid: eventually (d_goal < 1)"), WORLD)
+    (found,) = caught.value.diagnostics
+    assert found.code == "D870"
+    assert f"'{source}'" in found.message and "'d_obs'" in found.message
+
+
+def test_a_spec_in_stamps_is_refused_with_the_way_out():
+    with pytest.raises(UsageError) as caught:
+        make_task(api.compile("time s\nsignal d_goal\nsoft g: eventually[0 s, 5 s] (d_goal < 1)"), WORLD)
+    (found,) = caught.value.diagnostics
+    assert found.code == "D876"
+    assert "time 100 ms" in found.help
+
+
+def test_a_spec_with_a_period_is_taken():
+    bundle = api.compile("time 100 ms\nsignal d_goal\nsoft g: eventually[0 s, 5 s] (d_goal < 1)")
+    assert make_task(bundle, WORLD).endings == (RUNS,) * 5 + (GOAL,)

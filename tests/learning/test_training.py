@@ -286,9 +286,9 @@ def test_an_output_that_is_something_else_is_refused_before_training(small, tmp_
 
 def test_a_spec_in_seconds_is_refused_before_training(kit, small):
     bundle = api.compile("time s\nsignal d_goal\nsoft a: eventually[0 s, 5 s] (d_goal < 1)")
-    with pytest.raises(DataError) as caught:
+    with pytest.raises(UsageError) as caught:
         learn(bundle, small[1])
-    assert caught.value.diagnostics[0].code == "D810"
+    assert caught.value.diagnostics[0].code == "D876"
 
 
 def test_two_goals_are_refused(kit):

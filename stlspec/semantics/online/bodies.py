@@ -15,16 +15,22 @@ from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF, Range
 
 _MOST_CLAUSES = 16
+_LARGEST = 64
 
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """A mix of settled formulas: op is "and", "or" with parts, or "formula" with a node and its sign."""
+    """A mix of formulas, as a rule settled: op is "and", "or" with parts, or "formula" with a node and its sign."""
 
     op: str
     parts: tuple["Settled", ...] = ()
     node: int = -1
     negated: bool = False
+
+    @property
+    def size(self) -> int:
+        """How many formulas it mixes."""
+        return sum(part.size for part in self.parts) or 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,30 +59,52 @@ def clauses_of(plan: Plan, index: int, negated: bool = False) -> list[Clause] | 
 
     Not in the paper: it serves monitors.
 
-    Returns: clauses; None if the formula looks ahead through more than one operator, or has too many clauses.
+    Returns: clauses; None if the formula looks ahead through more than one operator, or the clauses get too many
+             or too large.
     """
-    node = plan.nodes[index]
-    if plan.settled[index]:
-        return [Clause(Settled("formula", (), index, negated))]
-    if node.op == "not":
-        return clauses_of(plan, node.children[0], not negated)
-    if node.op in ("and", "or"):
-        found = [clauses_of(plan, child, negated) for child in node.children]
-        lists = [clauses for clauses in found if clauses is not None]
-        if len(lists) < len(found):
+    return _Multiplication(plan).clauses(index, negated)
+
+
+class _Multiplication:
+    """Looks at each node of a shared DAG once, and stops where clauses get too many or too large."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._found: dict[tuple[int, bool], list[Clause] | None] = {}
+
+    def clauses(self, index: int, negated: bool) -> list[Clause] | None:
+        key = (index, negated)
+        if key not in self._found:
+            found = self._clauses(index, negated)
+            if found is not None and (len(found) > _MOST_CLAUSES or any(c.settled.size > _LARGEST for c in found)):
+                found = None
+            self._found[key] = found
+        return self._found[key]
+
+    def _clauses(self, index: int, negated: bool) -> list[Clause] | None:
+        plan = self._plan
+        node = plan.nodes[index]
+        if plan.settled[index]:
+            return [Clause(Settled("formula", (), index, negated))]
+        if node.op == "not":
+            return self.clauses(node.children[0], not negated)
+        if node.op in ("and", "or"):
+            found = [self.clauses(child, negated) for child in node.children]
+            lists = [clauses for clauses in found if clauses is not None]
+            if len(lists) < len(found):
+                return None
+            if (node.op == "and") != negated:
+                return _joined([clause for clauses in lists for clause in clauses])
+            return _multiplied(lists)
+        if node.op not in FUTURE or not all(plan.settled[c] for c in node.children):
             return None
-        if (node.op == "and") != negated:
-            return _joined([clause for clauses in lists for clause in clauses])
-        return _multiplied(lists)
-    if node.op not in FUTURE or not all(plan.settled[c] for c in node.children):
-        return None
-    if node.op == "next" and not plan.counted:
-        return None  # With gaps nobody knows when the next sample comes.
-    return [Clause(FALSE, (_unknown(plan, index, negated),))]
+        if node.op == "next" and not plan.counted:
+            return None  # With gaps nobody knows when the next sample comes.
+        return [Clause(FALSE, (operator_of(plan, index, negated),))]
 
 
-def _unknown(plan: Plan, index: int, negated: bool) -> Unknown:
-    """Return the operator of a node, a negation moved to its operands."""
+def operator_of(plan: Plan, index: int, negated: bool) -> Unknown:
+    """Return the operator of a node, a negation moved to its operands; not in the paper: it serves monitors."""
     node = plan.nodes[index]
     operands = tuple(Settled("formula", (), child, negated) for child in node.children)
     low, high = plan.tails[index]
@@ -99,7 +127,7 @@ def _multiplied(lists: Sequence[Sequence[Clause]]) -> list[Clause] | None:
 
 
 def _disjunction(clauses: Sequence[Clause]) -> Clause:
-    settled = tuple(clause.settled for clause in clauses if clause.settled != FALSE)
+    settled = tuple(dict.fromkeys(clause.settled for clause in clauses if clause.settled != FALSE))
     mix = settled[0] if len(settled) == 1 else Settled("or", settled)
     unknowns: list[Unknown] = []
     for unknown in dict.fromkeys(u for clause in clauses for u in clause.unknowns):
@@ -116,7 +144,7 @@ def _disjunction(clauses: Sequence[Clause]) -> Clause:
 
 def _joined(clauses: Sequence[Clause]) -> list[Clause]:
     """Return a conjunction with all its settled clauses as one, each other clause once."""
-    settled = tuple(clause.settled for clause in clauses if not clause.unknowns)
+    settled = tuple(dict.fromkeys(clause.settled for clause in clauses if not clause.unknowns))
     found = list(dict.fromkeys(clause for clause in clauses if clause.unknowns))
     if settled:
         found.append(Clause(settled[0] if len(settled) == 1 else Settled("and", settled)))

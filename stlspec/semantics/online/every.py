@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ir import Node
+from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.arrays import enclosures, needed, stretch, three
 from stlspec.semantics.online.front import Front, Lines
@@ -30,7 +31,7 @@ from stlspec.semantics.online.late import (
     Sink,
 )
 from stlspec.semantics.online.past import Greatest, Since, Sliding
-from stlspec.semantics.online.plan import Ends, Plan, make_plan
+from stlspec.semantics.online.plan import DEEPEST, Ends, Plan, make_plan
 from stlspec.semantics.online.program import Program, compiled
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, whole
 from stlspec.semantics.online.tape import Tape, reach_back
@@ -199,6 +200,10 @@ def deferred(bundle: BundleData, plan: Plan) -> tuple[str, ...]:
 def every_program(bundle: BundleData, ends: Ends) -> Program:
     """Write the program of the reading `every`."""
     plan, lines = make_plan(bundle, ends), Lines()
+    for requirement in bundle.requirements:
+        if plan.depths[requirement.root] > DEEPEST:
+            what = f"the reading `every` of '{requirement.name}', whose operators look ahead {DEEPEST} deep and more"
+            raise UsageError([diagnostic("D880", what=what, help="use the reading `start`")])
     front = Front(plan, bundle.signals, lines)
     front.write_samples()
     model = Network(bundle, plan)

@@ -20,7 +20,7 @@ from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.samples import as_boolean, as_real, missing, outside, refuse
 from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
-from stlspec.semantics.robustness import TIE
+from stlspec.semantics.robustness import TIE, needed_nodes
 
 _MAY_BE_NAN = frozenset({"add", "sub", "mul", "div", "pow", "sqrt", "log", "sin", "cos", "delta", "rate"})
 
@@ -132,6 +132,7 @@ class Front:
         self.plan, self.lines = plan, lines
         self._signals = {s.name: s for s in signals}
         self._named: dict[int, str] = {}
+        self._formulas: dict[int, str] = {}
         self._kept: list[str] = []
 
     def write_samples(self) -> None:
@@ -218,27 +219,24 @@ class Front:
         return f"{self.lines.bind(_scalar(op))}({', '.join(names)})"
 
     def value(self, index: int) -> str:
-        """Write a settled formula, once; return its variable."""
-        if self.plan.nodes[index].op == "bool":
-            return self._once(index, self._boolean)
-        return self._once(index, self._formula)
+        """Write a settled formula and all under it, each once; return its variable."""
+        if index not in self._formulas:
+            # A loop over the DAG, not a recursion: a chain of formulas may be long.
+            for below in needed_nodes(self.plan.nodes, [index]):
+                node = self.plan.nodes[below]
+                if node.op not in REAL and below not in self._formulas:
+                    self._formulas[below] = self._formula(below, node)
+        return self._formulas[index]
 
-    def _once(self, index: int, write: Callable[[int, Node], str]) -> str:
-        key = -1 - index if self.plan.nodes[index].op == "bool" else index
-        if key not in self._named:
-            self._named[key] = write(index, self.plan.nodes[index])
-        return self._named[key]
-
-    def _boolean(self, index: int, _: Node) -> str:
-        return self.lines.let(f"INF if {self._named[index]} else NINF")
-
-    def _formula(self, _: int, node: Node) -> str:
+    def _formula(self, index: int, node: Node) -> str:
         lines, op = self.lines, node.op
+        if op == "bool":
+            return lines.let(f"INF if {self._named[index]} else NINF")
         if op in ("true", "false"):
             return "INF" if op == "true" else "NINF"
         if op in COMPARISONS:
             return self._comparison(op, *(self._named[c] for c in node.children))
-        operands = [self.value(c) for c in node.children]
+        operands = [self._formulas[c] for c in node.children]
         if op == "not":
             return lines.negated(operands[0])
         if op in ("and", "or"):

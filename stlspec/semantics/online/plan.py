@@ -14,6 +14,9 @@ from stlspec.compiler.bundle import BundleData, TimeBase
 from stlspec.compiler.ir import COMPARISONS, FUTURE, REAL, Node
 from stlspec.semantics.online.ranges import INF, WHOLE, Range, value_ranges
 
+DEEPEST = 150
+"""Deeper formulas are computed by loops only; each level takes some of the stack otherwise."""
+
 Ends = Literal["any", "horizon"]
 
 
@@ -23,7 +26,8 @@ class Plan:
 
     nodes: windows begin and end on samples where these are periodic. stride: ticks from a sample to the next
     possible one. dense: no sample is left out. certain: possible samples are promised to come. settled: for
-    each node. tails: for each formula (low, high).
+    each node. depths: how many operators that are not settled stand above each other, the node included. tails:
+    for each formula (low, high).
     """
 
     nodes: tuple[Node, ...]
@@ -32,6 +36,7 @@ class Plan:
     dense: bool
     certain: bool
     settled: tuple[bool, ...]
+    depths: tuple[int, ...]
     tails: dict[int, Range]
 
     @property
@@ -54,16 +59,18 @@ def make_plan(bundle: BundleData, ends: Ends = "any") -> Plan:
     # Plain texts compare faster than the parser's tokens, which operators may be.
     plain = (replace(node, op=str(node.op)) for node in bundle.nodes)
     nodes = tuple(_on_samples(node, base.period) for node in plain)
-    settled: list[bool] = []
+    depths: list[int] = []
     for node in nodes:
-        settled.append(node.op not in FUTURE and all(settled[c] for c in node.children))
+        below = max((depths[c] for c in node.children), default=0)
+        depths.append(below + 1 if below or node.op in FUTURE else 0)
     return Plan(
         nodes=nodes,
         base=base,
         stride=(base.period or 1) if even else 1,
         dense=base.kind == "step" or certain,
         certain=certain,
-        settled=tuple(settled),
+        settled=tuple(depth == 0 for depth in depths),
+        depths=tuple(depths),
         tails=_tails(nodes, value_ranges(nodes, bundle.signals, base), certain),
     )
 

@@ -2,7 +2,8 @@
 
 In: the DAG. Out: lines that give low, high and current of each requirement. Boolean operators at the top are
 computed from the enclosures of their operands; each outermost temporal operator gets the cheapest
-engine that serves it: one clamp over settled operands, queues of clamps over one level more, arrays for the rest.
+engine that serves it: one clamp over settled operands, queues of clamps over one level more, one table where
+nothing has an end, arrays for the rest.
 """
 
 from collections.abc import Callable
@@ -10,14 +11,23 @@ from functools import partial
 from typing import Any
 
 from stlspec.compiler.ir import Interval
-from stlspec.semantics.online.bodies import Clause, Settled, Unknown, clause_tail, clauses_of, fills
+from stlspec.semantics.online.bodies import (
+    Clause,
+    Settled,
+    Unknown,
+    clause_tail,
+    clauses_of,
+    fills,
+    operator_of,
+)
 from stlspec.semantics.online.corners import Corners
 from stlspec.semantics.online.front import Front
 from stlspec.semantics.online.general import General, inputs_of
 from stlspec.semantics.online.nested import Nested
 from stlspec.semantics.online.outermost import Always, First, Starting, Until
-from stlspec.semantics.online.plan import Plan
+from stlspec.semantics.online.plan import DEEPEST, Plan
 from stlspec.semantics.online.ranges import INF
+from stlspec.semantics.online.unending import Signed, Unending, unending_operators
 
 MOST_UNKNOWNS = 4
 """In one clause; the tables of `corners` double with each."""
@@ -46,6 +56,8 @@ class Roots:
     def _write(self, index: int, origin: int) -> Names:
         node, lines = self._plan.nodes[index], self._lines
         below = node.children
+        if self._plan.depths[index] > DEEPEST:
+            return self._general(index, origin)
         if self._plan.settled[index]:
             return self._engine(lambda: First(), [self._front.value(index)], origin)
         if node.op == "not":
@@ -99,7 +111,14 @@ class Roots:
             clauses = clauses_of(plan, below[0], negated=node.op == "eventually")
             if clauses is not None and all(len(clause.unknowns) <= MOST_UNKNOWNS for clause in clauses):
                 return self._conjunction(clauses, index, origin)
-        names = [front.value(c) for c in inputs_of(plan, index)]
+        endless = unending_operators(plan, (index, False))
+        if endless is not None:
+            return self._unending(endless, origin)
+        return self._general(index, origin)
+
+    def _general(self, index: int, origin: int) -> Names:
+        plan = self._plan
+        names = [self._front.value(c) for c in inputs_of(plan, index)]
         return self._called(self._lines.part(lambda: General(plan, index, origin)), names)
 
     def _conjunction(self, clauses: list[Clause], index: int, origin: int) -> Names:
@@ -125,6 +144,43 @@ class Roots:
             return self._engine(make, [settled, "INF", *changes[0]], origin)
         padded = [name for names in changes for name in [*names, "NINF", "INF"][:4]]
         return self._engine(partial(Corners, plan, outer, tail, rows), [settled, *padded], origin)
+
+    def _unending(self, operators: list[Signed], origin: int) -> Names:
+        filling = [fills(self._plan, operator_of(self._plan, *signed))[0] for signed in operators]
+        names: list[str] = []
+        for m in range(2 ** len(operators)):
+            now: dict[Signed, str] = {}
+            for i, signed in enumerate(operators):
+                now[signed] = self._endless(signed, "INF" if m >> i & 1 else "NINF", now)
+            names += [now[signed] for signed in operators]
+        return self._engine(partial(Unending, filling, len(operators) - 1), names, origin)
+
+    def _endless(self, signed: Signed, following: str, now: dict[Signed, str]) -> str:
+        """Write an operator at this sample from its value at the next one; `now` has those under it."""
+        least, greatest = self._lines.least, self._lines.greatest
+        operator = operator_of(self._plan, *signed)
+        names = [self._under(operand.node, operand.negated, now) for operand in operator.operands]
+        if operator.op == "always":
+            return least([names[0], following])
+        if operator.op == "eventually":
+            return greatest([names[0], following])
+        if operator.op == "until":
+            return greatest([names[1], least([names[0], following])])
+        return least([names[1], greatest([names[0], following])])
+
+    def _under(self, index: int, negated: bool, now: dict[Signed, str]) -> str:
+        """Write a Boolean mix of settled formulas and of operators whose values are known."""
+        node = self._plan.nodes[index]
+        if (index, negated) in now:
+            return now[index, negated]
+        if self._plan.settled[index]:
+            name = self._front.value(index)
+            return self._lines.negated(name) if negated else name
+        if node.op == "not":
+            return self._under(node.children[0], not negated, now)
+        pick = self._lines.least if (node.op == "and") != negated else self._lines.greatest
+        now[index, negated] = pick([self._under(child, negated, now) for child in node.children])
+        return now[index, negated]
 
     def _mix(self, mix: Settled) -> str:
         """Write a settled mix."""

@@ -330,6 +330,19 @@ def test_stamps_close_to_the_period_are_taken_as_such():
     assert monitor.time == 102.01
 
 
+def test_every_refuses_what_would_need_a_deep_stack():
+    def deep(b):
+        p = above(b, "x", 0)
+        for _ in range(200):
+            p = b.add("next", [p])
+        return {"r": p}
+
+    bundle = spec(deep)
+    with pytest.raises(UsageError, match="150 deep"):
+        make_monitor(bundle, "every")
+    assert make_monitor(bundle).update({"x": 1})["r"].verdict == "undecided"
+
+
 def test_without_samples_nothing_is_finished():
     with pytest.raises(DataError, match="D803"):
         make_monitor(spec(avoid)).finish()

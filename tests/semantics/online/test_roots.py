@@ -39,6 +39,8 @@ G, F, U, O = (windowed(op) for op in ("always", "eventually", "until", "once")) 
         (lambda b, p, q: G(b, b.add("or", [G(b, p), F(b, q)])), ["Corners"]),
         (lambda b, p, q: G(b, F(b, G(b, p))), ["General"]),
         (lambda b, p, q: U(b, F(b, p), q), ["General"]),
+        (lambda b, p, q: windowed("always", 0, None)(b, U(b, F(b, p), q)), ["General"]),
+        (lambda b, p, q: windowed("until", 0, None)(b, windowed("always", 0, None)(b, p), q), ["Unending"]),
         (lambda b, p, q: O(b, G(b, p)), ["Always"]),
         (lambda b, p, q: windowed("once", 1)(b, G(b, p)), []),
         (lambda b, p, q: b.add("prev", [G(b, p)]), []),
@@ -62,3 +64,35 @@ def test_next_inside_a_body_needs_samples_without_gaps():
 
     assert engines(build) == ["Nested"]
     assert engines(build, PERIOD) == ["General"]
+
+
+def chain(op, n, interval=None):
+    def build(b, p, q):
+        for _ in range(n):
+            p = b.add(op, [p] if op != "and" else [p, b.add("not", [p])], interval=interval)
+        return p
+
+    return build
+
+
+@pytest.mark.parametrize(
+    ("build", "expected"),
+    [
+        (chain("not", 3000), ["First"]),
+        (chain("and", 3000), ["First"]),
+        (chain("next", 3000), ["General"]),
+        (chain("always", 1000, (0, 1)), ["General"]),
+    ],
+)
+def test_long_chains_need_no_deep_stack(build, expected):
+    assert engines(build) == expected
+
+
+def test_shared_formulas_are_looked_at_once():
+    def build(b, p, q):
+        x, y = F(b, p), windowed("always", 0, None)(b, q)
+        for _ in range(60):
+            x, y = b.add("and", [x, y]), b.add("or", [y, x])
+        return windowed("always", 0, None)(b, x)
+
+    assert len(engines(build)) < 20
