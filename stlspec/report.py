@@ -156,7 +156,8 @@ def print_reward(reward: RewardMap, file: str, stream: TextIO) -> None:
     worst = min(values)
     console.print(
         Text(
-            f"{file}: {counted(len(values), 'state')} with a reward, from {shown_number(worst)} to {shown_number(best[0])}"
+            f"{file}: {counted(len(values), 'state')} with a reward, "
+            f"from {shown_number(worst)} to {shown_number(best[0])}"
             f" (at {best[1]}), all others 0"
         )
     )
