@@ -158,7 +158,16 @@ class _CsvRows:
         if len(row) != len(self._names):
             reason = f"it has {len(row)} values, but the header has {len(self._names)} columns"
             _refuse(number, reason, "give every column a value")
-        return {name: number_of_word(word) for name, word in zip(self._names, row, strict=True)}
+        pairs = zip(self._names, row, strict=True)
+        return {name: _whole(word) if name == "time" else number_of_word(word) for name, word in pairs}
+
+
+def _whole(word: str) -> Any:
+    """Read a time stamp; a whole one stays whole, since nanoseconds since 1970 are no exact floats."""
+    from stlspec.readers.model import number_of_word
+
+    text = word.strip()
+    return int(text) if text.lstrip("+-").isdecimal() and len(text) < 20 else number_of_word(word)
 
 
 def _json_sample(number: int, text: str) -> Mapping[str, Any]:
@@ -231,5 +240,6 @@ def _final_line(monitor: "Monitor", rest: Mapping[str, Any], as_json: bool) -> s
 
 
 def _text_line(sample: int, time: float, parts: Sequence[str]) -> str:
-    at = f"{sample}" if time == sample else f"{sample} at {number_text(time)}"
+    shown = str(time) if isinstance(time, int) else number_text(time)
+    at = f"{sample}" if time == sample else f"{sample} at {shown}"
     return f"{at}: " + "; ".join(parts)

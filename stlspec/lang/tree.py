@@ -79,7 +79,7 @@ class TreeBuilder:
     def __getattr__(self, rule: str) -> Callable[[list[Child]], Child]:
         """Return the callback of an operator's rule."""
         if rule in OPERATORS:
-            return partial(_operator, rule)
+            return partial(_operator, str(rule))  # Lark passes a token
         raise AttributeError(rule)
 
     def statement(self, children: list[Child]) -> Child:

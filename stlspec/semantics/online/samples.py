@@ -14,7 +14,7 @@ import numpy as np
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
-from stlspec.semantics.online.saving import Remembering, State, Unsound, number, numbers, optional, whole
+from stlspec.semantics.online.saving import LARGEST, Remembering, State, Unsound, number, numbers, optional, whole
 
 _LONGEST_TICKS = 2.0**62
 _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
@@ -23,6 +23,11 @@ _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
 def refuse(code: str, **fields: Any) -> NoReturn:
     """Raise the error that refuses a sample."""
     raise DataError([diagnostic(code, **fields)])
+
+
+def _stamp(value: Any) -> float:
+    """Read a kept time stamp; a whole one stays whole, since nanoseconds since 1970 are no exact floats."""
+    return whole(value) if isinstance(value, int) else number(value)
 
 
 class Clock(Remembering):
@@ -37,8 +42,8 @@ class Clock(Remembering):
     STATE: ClassVar[State] = {
         "n": whole,
         "ticks": whole,
-        "first": optional(number),
-        "stamp": optional(number),
+        "first": optional(_stamp),
+        "stamp": optional(_stamp),
         "last": numbers,
     }
 
@@ -73,7 +78,9 @@ class Clock(Remembering):
         return self.n if base.kind == "step" else self._on_period(stamp, ticks)
 
     def number(self, time: Any) -> float:
-        """Return a time stamp as a float; its value may still be infinite or NaN."""
+        """Return a time stamp; a whole one stays whole, a float may still be infinite or NaN."""
+        if isinstance(time, (int, np.integer)) and not isinstance(time, bool) and abs(int(time)) < LARGEST:
+            return int(time)
         return as_real("time", time, self.n)
 
     def take(self, ticks: int, time: Any) -> None:

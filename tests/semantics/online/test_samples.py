@@ -5,7 +5,9 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
+from stlspec import api
 from stlspec.errors import DataError
+from stlspec.semantics.online import Monitor, make_monitor
 from stlspec.semantics.online.samples import Clock, as_boolean, as_real, missing
 from tests.semantics.online.cases import PERIOD, STAMPS, STEP
 
@@ -67,3 +69,14 @@ def test_the_latest_time_is_shown_as_given():
     clock = Clock(PERIOD, False)
     run(clock, None, None)
     assert (clock.begin, clock.latest) == (0.0, 2.0)
+
+
+def test_whole_stamps_stay_exact_where_floats_would_not():
+    bundle = api.compile("time ns\nsignal x\nhard c: eventually[30 ms, 30 ms] (x >= 0)\n")
+    monitor = make_monitor(bundle)
+    for k, x in enumerate((-1.0, -1.0, -1.0, 1.0)):
+        monitor.update({"x": x}, 1_700_000_000_123_456_789 + k * 10_000_000)
+        monitor = Monitor.from_bytes(bundle, monitor.to_bytes())
+    assert monitor.finish()["c"].robustness == 1.0
+    with pytest.raises(DataError, match="D802"):
+        monitor.update({"x": 1.0}, 1_700_000_000_153_456_789)
