@@ -174,7 +174,6 @@ def test_the_public_surface_is_frozen() -> None:
             "Demonstration",
             "Diagnostic",
             "Evaluation",
-            "GateError",
         ),
         *("InputError", "Outcome", "Policy", "Ranking", "RewardMap", "SpecError", "StlspecError", "UsageError"),
         *("Verdict", "Witness", "__version__", "compile", "infer_reward", "learn", "load"),

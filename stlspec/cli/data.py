@@ -14,7 +14,7 @@ import typer
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
 from stlspec.cli.output import Format, ScoreFormat, print_json, warn
 from stlspec.compiler.printing import counted
-from stlspec.errors import GateError, UsageError, diagnostic
+from stlspec.errors import UsageError, diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -145,7 +145,7 @@ def score(
     if failed:
         what = f"{failed} of {counted(len(ranking.demonstrations), 'demonstration')} failed `--require {require}`"
         warn([diagnostic("D881", what=what, help="the result above says why")])
-        raise typer.Exit(GateError.exit_code)
+        raise typer.Exit(1)
 
 
 def _check_explained(explain: bool, output: ScoreFormat) -> None:

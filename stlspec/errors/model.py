@@ -2,11 +2,10 @@
 
     StlspecError            .diagnostics, .exit_code
     ├── SpecError           1  the text of a spec has errors
-    ├── InputError          2  an input cannot be used
-    │   ├── BundleError     2  B7xx: a bundle is damaged, foreign or of another version
-    │   ├── DataError       2  D8xx: a demonstration or trace cannot be used
-    │   └── UsageError      2  the command line or a call asks for something impossible
-    └── GateError           1  a gate the user asked for did not hold (score --require, learn)
+    └── InputError          2  an input cannot be used
+        ├── BundleError     2  B7xx: a bundle is damaged, foreign or of another version
+        ├── DataError       2  D8xx: a demonstration or trace cannot be used
+        └── UsageError      2  the command line or a call asks for something impossible
 
 One row of the catalogue owns a code: its level and all its wording. `diagnostic` fills the row's templates;
 nothing else writes a message, so wording stays in one place.
@@ -141,10 +140,6 @@ class StlspecError(Exception):
 
 class SpecError(StlspecError):
     """The text of a spec has errors."""
-
-
-class GateError(StlspecError):
-    """A gate that the user asked for did not hold."""
 
 
 class InputError(StlspecError):

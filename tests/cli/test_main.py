@@ -9,6 +9,7 @@ import pytest
 
 from stlspec.cli import data
 from stlspec.cli.main import build, run
+from stlspec.compiler import bundle_file, files
 from stlspec.errors import CATALOGUE
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -17,6 +18,8 @@ LAKE = str(SPECS / "frozenlake_4x4.stl")
 LAKE_DEMOS = str(SPECS / "demos" / "frozenlake_4x4.jsonl")
 CSV = "d_obs,d_goal\n2,1\n1,0\n"
 MESH = "solid cube\n facet normal 0 0 1\n  outer loop\nendsolid\n"
+
+TAMPERED = bundle_file.dump(files.read_spec(GRID)).replace(b'"value":10.0', b'"value":11.0')
 
 BAD_INPUT = {
     "an empty spec": ("spec", b"", 1, "S016"),
@@ -28,6 +31,7 @@ BAD_INPUT = {
     "an unbound param": ("spec", b"param T\nsignal d_obs\nhard a: always[0, T] (d_obs > 0)\n", 2, "N106"),
     "a truncated bundle": ("bundle", b'{"schema": "stlspec.bundle/1", "lang', 2, "B701"),
     "a bundle of another version": ("bundle", b'{"schema": "stlspec.bundle/9"}', 2, "B702"),
+    "a tampered bundle": ("bundle", TAMPERED, 2, "B703"),
     "an empty demonstration": ("demo", b"", 2, "D8"),
     "a binary demonstration": ("demo", b"\x80\x81\x00\x01", 2, "D8"),
     "a NaN": ("demo", b"d_obs,d_goal\n2,1\nnan,0\n", 2, "D801"),

@@ -5,7 +5,6 @@ import pytest
 from stlspec.errors import (
     BundleError,
     DataError,
-    GateError,
     InputError,
     Label,
     SpecError,
@@ -79,7 +78,6 @@ def test_diagnostics_sort_by_file_then_place_then_code():
     ("kind", "code", "parent"),
     [
         (SpecError, 1, StlspecError),
-        (GateError, 1, StlspecError),
         (InputError, 2, StlspecError),
         (BundleError, 2, InputError),
         (DataError, 2, InputError),
