@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from stlspec.compiler.ir import COMPARISONS, REAL, Node
+from stlspec.compiler.ir import COMPARISONS, REAL, Node, reachable
 from stlspec.semantics import windows
 from stlspec.semantics.expressions import expression_values
 from stlspec.semantics.windows import Grid
@@ -33,6 +33,8 @@ _TEMPORAL: dict[str, Callable[..., Floats]] = {
 }
 # Of a batch this many numbers of a signal are evaluated at a time.
 _BATCH = 2**16
+_IN_PLACE = frozenset({"and", "or", "not"})
+"""Operators that may write over an operand that nothing else needs."""
 _HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})
 
 
@@ -82,7 +84,7 @@ def batches(trace: Trace) -> Iterator[tuple[int, Trace]]:
 
 def _evaluate(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, spare: list[Floats]) -> list[Floats]:
     """Evaluate `roots`; `spare` holds arrays to write to, and takes those that are no longer needed."""
-    needed = needed_nodes(nodes, roots)
+    needed = schedule(nodes, roots)
     uses = [0] * len(nodes)
     for index in chain(roots, *(nodes[i].children for i in needed)):
         uses[index] += 1
@@ -95,13 +97,14 @@ def _evaluate(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, spare: 
             if node.op in REAL:
                 values[index] = expression_values(nodes, index, operands, trace)
             else:
-                out = spare.pop() if spare else np.empty(trace.shape)
+                ending = [c for c in node.children[:2] if uses[c] == 1] if node.op in _IN_PLACE else []
+                out = values[ending[0]] if ending else spare.pop() if spare else np.empty(trace.shape)
                 values[index] = _formula_values(node, operands, trace, grid, out)
             for child in node.children:
                 uses[child] -= 1
                 if uses[child] == 0:
                     freed = values.pop(child)
-                    if nodes[child].op not in REAL:
+                    if nodes[child].op not in REAL and freed is not values[index]:
                         spare.append(freed)
     return [values[r] if nodes[r].op not in REAL else np.broadcast_to(values[r], trace.shape) for r in roots]
 
@@ -113,6 +116,19 @@ def needed_nodes(nodes: Sequence[Node], roots: Sequence[int]) -> list[int]:
         if index in wanted:
             wanted.update(nodes[index].children)
     return sorted(wanted)
+
+
+def schedule(nodes: Sequence[Node], roots: Sequence[int]) -> list[int]:
+    """Return the nodes that `roots` need, children first, the roots over until and since before the others.
+
+    Their scans take more memory for a while than anything else, so they run while few results are kept yet.
+    """
+    scans = [False] * len(nodes)
+    for index in needed_nodes(nodes, roots):
+        node = nodes[index]
+        scans[index] = node.op in ("until", "since") or any(scans[c] for c in node.children)
+    _, order = reachable(nodes, sorted(roots, key=lambda root: not scans[root]))
+    return list(order)
 
 
 def shown(values: Floats) -> Floats:

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stlspec import api
 from stlspec.compiler.ir import Builder
-from stlspec.semantics.robustness import TIE, evaluate_nodes, needed_nodes, shown
+from stlspec.semantics.robustness import TIE, evaluate_nodes, needed_nodes, schedule, shown
 from stlspec.traces import make_trace
 from tests.oracle import disagreement, main
 from tests.strategies import DECLARED, STEP, cases, random_case, random_signals, seeded_cases
@@ -112,3 +113,19 @@ def test_a_thousand_nested_operators_need_no_recursion():
     trace = make_trace(STEP, DECLARED[:1], {"x": [3.0] * 10})
     # 250 times strong `next` under 250 negations: every sample ends beyond the trace.
     assert np.isinf(evaluate_nodes(builder.nodes, [node], trace)[0]).all()
+
+
+def test_scans_run_while_few_results_are_kept_and_children_come_first():
+    nodes = api.compile("signal x\nhard a: always (x > 0)\nhard b: (x > 0) until (x > 1)\n").nodes
+    roots = [next(i for i, node in enumerate(nodes) if node.op == op) for op in ("always", "until")]
+    order = schedule(nodes, roots)
+    assert order.index(roots[1]) < order.index(roots[0])
+    assert sorted(order) == list(range(len(nodes)))
+    for place, index in enumerate(order):
+        assert set(nodes[index].children) <= set(order[:place])
+
+
+def test_writing_over_an_operand_changes_no_other_value():
+    bundle = api.compile("signal x\nlet p = x > 0\nhard a: p and x < 3 and p\nhard b: not p\nhard c: p or not p\n")
+    found = bundle.evaluate({"x": [1.0, 2.0]})
+    assert [r.signal.tolist() for r in found.values()] == [[1.0, 1.0], [-1.0, -2.0], [1.0, 2.0]]
