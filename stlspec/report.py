@@ -20,12 +20,13 @@ from rich.table import Table
 from rich.text import Text
 
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import number
 from stlspec.compiler.printing import counted
 from stlspec.envs.model import Environment
 from stlspec.formulas import FormulaResult
 from stlspec.learning import Outcome
 from stlspec.rewards import RewardMap
-from stlspec.scores import DemonstrationScore, Ranking, moment, number
+from stlspec.scores import DemonstrationScore, Ranking, moment
 
 Progress = Callable[[int, int, int], None]
 _WIDTH_OF_FILES = 10_000

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement
+from stlspec.compiler.bundle_file import number
 from stlspec.compiler.printing import number_text
 from stlspec.demos import BoundDemonstration, Demonstration, OnNan, bind
 from stlspec.envs.model import Environment
@@ -98,11 +99,6 @@ class Ranking:
             "vacuous": result.vacuous,
             "witness": None if witness is None else {"sample": witness.sample, "time": witness.time},
         }
-
-
-def number(value: float) -> float | str:
-    """Return `value` as JSON can hold it: an infinity becomes the string "inf" or "-inf"."""
-    return value if math.isfinite(value) else ("inf" if value > 0 else "-inf")
 
 
 def bounded_robustness(robustness: float, bound: Bounding, scale: float) -> float:

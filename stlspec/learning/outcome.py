@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import number
 from stlspec.errors import Diagnostic
 from stlspec.learning.farming import Farming
 from stlspec.learning.policy import Policy
@@ -17,7 +18,6 @@ from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
 from stlspec.learning.storage import RESULT_SCHEMA
 from stlspec.rewards import RewardMap
-from stlspec.scores import number
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
 

@@ -12,10 +12,10 @@ from math import inf
 from typing import Any
 
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import number
 from stlspec.envs.model import Environment
 from stlspec.learning.qstl import CHUNK, Learner
 from stlspec.learning.shaping import ENDINGS
-from stlspec.scores import number
 
 _FORMAT = 1
 
