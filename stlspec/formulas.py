@@ -10,13 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from stlspec.api import Bundle, publish
+from stlspec.binding import bind
 from stlspec.compiler.checks import check, names_in
 from stlspec.compiler.compiling import compile_syntax
 from stlspec.compiler.inference import FUNCTIONS, NOW
-from stlspec.demos import Demonstration, OnNan, bind
+from stlspec.demos import Demonstration
 from stlspec.errors import SpecError, UsageError, diagnostic
 from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement
 from stlspec.lang.parse import Syntax, parse, parse_formula
+from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending
 from stlspec.semantics.evaluation import RequirementResult
 from stlspec.source import SourceText, Span

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from stlspec.binding import BoundDemonstration
 from stlspec.compiler.bundle import BundleData, Requirement
 from stlspec.compiler.bundle_file import meaning_sha256
-from stlspec.demos import BoundDemonstration, Demonstration
+from stlspec.demos import Demonstration
 from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic

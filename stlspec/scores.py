@@ -11,13 +11,15 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+from stlspec.binding import BoundDemonstration, bind
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement
 from stlspec.compiler.bundle_file import number
 from stlspec.compiler.printing import number_text
-from stlspec.demos import BoundDemonstration, Demonstration, OnNan, bind
+from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, diagnostic
 from stlspec.lang.units import STEP
+from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 

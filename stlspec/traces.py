@@ -140,6 +140,18 @@ def make_trace(
     return trace
 
 
+def time_ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None = None) -> Ints:
+    """Return the ticks of n samples since the first, whatever period the spec declares.
+
+    Not in the paper: exactness of time.
+
+    Returns: int64, (n_samples,), strictly increasing; without stamps, those of the spec's period.
+    Raises:  DataError D802, D805, D806, D810, D812: stamps are needed and missing, or cannot be used.
+    """
+    free = base if time is None else replace(base, kind="stamps", period=None)
+    return _times(free, n, time, file)[0]
+
+
 def whole_stamps(values: ArrayLike) -> Ints | None:
     """Return time stamps as int64 if all are whole numbers by their type that fit; else None.
 

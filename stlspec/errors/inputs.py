@@ -283,4 +283,40 @@ CODES: tuple[Code, ...] = (
         good='# pip install "gymnasium[box2d]"',
         kind="shown",
     ),
+    Code(
+        "D844",
+        "a sampling period that cannot be read",
+        "error",
+        message="'{text}' is no sampling period",
+        help="write a positive number and a unit, a whole number of nanoseconds: --resample 100ms",
+        explanation="--resample takes the value of every signal at a steady period, so it needs a time with a "
+        "unit: ns, us, ms, s, min or h.",
+        bad="# --resample 100",
+        good="# --resample 100ms",
+        kind="shown",
+    ),
+    Code(
+        "D845",
+        "too many samples after resampling",
+        "error",
+        message="sampling again would give {count} samples, more than {most}",
+        help="choose a longer period, or check the first and the last time stamp",
+        explanation="A single wrong time stamp can make a recording seem years long; the number of samples is "
+        "bounded before any is made.",
+        bad="# stamps from 0 s to 1e9 s with --resample 1ms",
+        good="# the same stamps with --resample 1min",
+        kind="shown",
+    ),
+    Code(
+        "D846",
+        "a sampling period that does not fit the spec",
+        "error",
+        message="samples cannot be taken again at that period: {reason}",
+        help="{help}",
+        explanation="Samples are taken at times, so the spec must measure time; where it declares a period of its "
+        "own, every new sample must lie on it.",
+        bad="# time step, with --resample 100ms",
+        good="# time s, with --resample 100ms",
+        kind="shown",
+    ),
 )

@@ -33,7 +33,8 @@ class Recording:
     columns: for each name an array (n_samples,), float64 or bool; object where the values are neither.
     states: one a sample, as written. actions: one a sample but the first; actions[k] leads to sample k + 1.
     env: the environment it was made in, as described in the file. episode: what tells it from the other
-    recordings of the file; None when it is the only one.
+    recordings of the file; None when it is the only one. time_unit: of the stamps, where the file itself tells
+    it ("ns", "us", "ms", "s"); they are whole then. others: columns of the file that nobody asked for.
     """
 
     name: str | None = None
@@ -43,6 +44,8 @@ class Recording:
     actions: tuple[Any, ...] | None = None
     env: Mapping[str, Any] | None = None
     episode: str | None = None
+    time_unit: str | None = None
+    others: tuple[str, ...] = ()
 
     @property
     def n_samples(self) -> int:
@@ -215,3 +218,11 @@ def episode_rows(labels: Sequence[Any]) -> list[tuple[str, npt.NDArray[np.int64]
     for index, label in enumerate(labels):
         rows.setdefault(str(label).strip(), []).append(index)
     return [(label, np.array(found, dtype=np.int64)) for label, found in rows.items()]
+
+
+def plain(value: Any) -> Any:
+    """Return an array or a NumPy number as plain Python values.
+
+    Not in the paper: an interface.
+    """
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from stlspec import api
-from stlspec.demos import bind, load_demonstrations
+from stlspec.binding import bind
+from stlspec.demos import load_demonstrations
 from stlspec.errors import DataError
 from stlspec.errors.data import CODES
 from stlspec.semantics.evaluation import evaluate
