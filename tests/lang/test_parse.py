@@ -96,13 +96,15 @@ def test_random_trees_are_read_back_as_they_were_written():
 
 
 def test_texts_without_sense_never_break_the_checker_and_cost_little():
-    rng, slowest = random.Random(1), 0.0
-    for _ in range(3000):
-        text = soup(rng)
+    def seconds(text: str) -> float:
         before = time.process_time()
         assert fault(text) is None, text
-        slowest = max(slowest, time.process_time() - before)
-    assert slowest < 0.05
+        return time.process_time() - before
+
+    rng = random.Random(1)
+    # A slow text is slow every time; a pause of the machine or of the garbage collector is not.
+    slow = [text for text in (soup(rng) for _ in range(3000)) if seconds(text) >= 0.05]
+    assert [text for text in slow if min(seconds(text) for _ in range(5)) >= 0.05] == []
 
 
 def test_broken_statements_are_found_where_they_are_and_nothing_else_is_blamed():
