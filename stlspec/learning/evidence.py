@@ -15,7 +15,7 @@ from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import Diagnostic, diagnostic
 from stlspec.learning.shaping import VIOLATION
-from stlspec.learning.task import Task
+from stlspec.learning.task import Task, followed
 from stlspec.rewards import RankedStates, RewardMap, ranked_states, reward_of
 
 Pair = tuple[int, int]
@@ -84,13 +84,13 @@ def violating_pairs(task: Task, states: Sequence[int]) -> set[Pair]:
 
     Not in the paper: Algorithm 2 forgets what it violated; the mask remembers.
 
-    Args:    task: tables over states. states: of a demonstration, (n_samples,).
-    Returns: every action that leads from one state to the next, where that one violates.
+    Args:    task: tables over learner states. states: of the environment, of a demonstration, (n_samples,).
+    Returns: every action that leads from one learner state to the next, where that one violates.
     """
     return {
         (before, action)
-        for before, after in pairwise(states)
-        if task.endings[after] == VIOLATION
+        for before, after in pairwise(followed(task, states))
+        if before is not None and after is not None and task.endings[after] == VIOLATION
         for action, reached in enumerate(task.transitions[before])
         if reached == after
     }

@@ -1,7 +1,7 @@
 """Algorithm 2: Q-learning that watches the hard requirements at every step.
 
-In: a `Task` (tables over states) and `Settings`. Out: a `Learner`, whose Q table, mask and log have grown by
-some episodes. States are row numbers and everything is in Python lists: a step of training is a handful of
+In: a `Task` (tables over learner states) and `Settings`. Out: a `Learner`, whose Q table, mask and log have
+grown by some episodes. States are row numbers and everything is in Python lists: a step of training is a handful of
 look-ups, many times faster than arrays at this size. A masked action has Q = -inf, so that the maximum over
 allowed actions is the maximum over the row.
 """
@@ -86,13 +86,13 @@ def run_chunk(learner: Learner, index: int) -> None:
     """Train for the next `CHUNK` episodes, or for those that are left.
 
     Not in the paper: random numbers depend on the seed and the number of the chunk alone, so that a resumed
-    run repeats an uninterrupted one bit for bit.
+    run repeats an uninterrupted one bit for bit (and on `Task.stream`, so that tasks of one run differ).
 
     Args:    learner: changed in place. index: the number of the chunk, from 0.
     """
     settings = learner.settings
     count = min(CHUNK, settings.episodes - index * CHUNK)
-    random = np.random.default_rng([settings.seed, index])
+    random = np.random.default_rng([settings.seed, index, *learner.task.stream])
     if settings.method == "paper":
         run_paper_episodes(learner, count, random)
     else:

@@ -1,13 +1,17 @@
-"""What there is to learn: goals and hard requirements as tables over the states of an environment.
+"""What there is to learn: goals and hard requirements as tables over the states that the learner tells apart.
 
 In: a compiled spec and an environment. Out: `Task`. A condition that looks at the present sample only has one
 value in each state, so it is evaluated once, over a trace that visits every state, and training looks it up.
+A *learner state* is a state of the environment together with what the hard requirements remember of the way
+there; without memory it is the environment's own state. Training sees nothing but the numbers of these
+states; `Task.places` and `lifted` lead from one numbering to the other.
 Whatever does not fit that form (several goals, hard requirements with memory, chance) is refused here, before
 any training.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -37,12 +41,14 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """Tables over states, row = number of the state.
+    """Tables over learner states, row = number of the state.
 
     goal_name: what the goal is called in the spec. start: the state that episodes begin in.
     transitions: (n_states, n_actions), the next states. endings: (n_states,), how an episode stands in each
     state: it violates a hard requirement, else is a goal, else is terminal in the environment, else runs on.
     robustness: (n_states, n_hard), of the condition that each hard requirement demands always.
+    places: (n_states,), the state of the environment in each; () = they are the environment's own states.
+    stream: what tells the random numbers of this task from those of other tasks of one run.
     """
 
     goal_name: str
@@ -52,6 +58,48 @@ class Task:
     transitions: tuple[tuple[int, ...], ...]
     endings: tuple[int, ...]
     robustness: tuple[tuple[float, ...], ...]
+    places: tuple[int, ...] = ()
+    stream: tuple[int, ...] = ()
+
+
+Value = TypeVar("Value")
+
+
+def lifted(task: Task, values: Sequence[Value]) -> tuple[Value, ...]:
+    """Carry a table over the environment's states, such as a reward map, to learner states.
+
+    Not in the paper: it bridges the two numberings.
+
+    Args:    values: one for each state of the environment.
+    Returns: (n_states,) of the task.
+    """
+    return tuple(values[place] for place in task.places) if task.places else tuple(values)
+
+
+def place(task: Task, state: int) -> int:
+    """Return the state of the environment that a learner state is in. Not in the paper: see `lifted`."""
+    return task.places[state] if task.places else state
+
+
+def followed(task: Task, states: Sequence[int]) -> tuple[int | None, ...]:
+    """Find the learner states that a recording passes through.
+
+    Not in the paper: a bad demonstration masks a step of the learner, memory included.
+
+    Args:    states: of the environment, (n_samples,).
+    Returns: (n_samples,); None from the first sample on that the learner could not have reached: the
+             recording begins elsewhere, jumps, or goes on after an end.
+    """
+    if not task.places:
+        return tuple(states)
+    found: list[int | None] = []
+    state = task.start if states and states[0] == task.places[task.start] else None
+    for sample, here in enumerate(states):
+        if sample and state is not None:
+            ahead = task.transitions[state] if task.endings[state] != VIOLATION else ()
+            state = next((after for after in ahead if task.places[after] == here), None)
+        found.append(state)
+    return tuple(found)
 
 
 def momentary(nodes: Sequence[Node]) -> tuple[bool, ...]:

@@ -22,7 +22,7 @@ from stlspec.learning.policy import Policy, greedy_action, greedy_path
 from stlspec.learning.qstl import CHUNK, Learner, run_chunk
 from stlspec.learning.results import publish
 from stlspec.learning.settings import make_settings
-from stlspec.learning.task import make_task, signal_sources
+from stlspec.learning.task import lifted, make_task, signal_sources
 from stlspec.rewards import RewardMap
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, evaluate
 
@@ -76,7 +76,7 @@ def learn(
     judge = Judge(bundle, environment)
     judge((task.start,))
     evidence = gather(bundle, task, environment, demonstrations, reward, demo_environment)
-    learner = Learner(task, settings, evidence.reward.table(environment))
+    learner = Learner(task, settings, lifted(task, evidence.reward.table(environment)))
     if settings.mask:
         learner.forbid(evidence.violating)
     prefilled = learner.masked

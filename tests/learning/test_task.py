@@ -10,7 +10,17 @@ from stlspec.envs.catalogue import make_environment
 from stlspec.envs.model import Environment
 from stlspec.errors import UsageError
 from stlspec.learning.shaping import GOAL, RUNS, TERMINAL, VIOLATION
-from stlspec.learning.task import find_goals, goal_name, make_task, momentary, step_conditions
+from stlspec.learning.task import (
+    Task,
+    find_goals,
+    followed,
+    goal_name,
+    lifted,
+    make_task,
+    momentary,
+    place,
+    step_conditions,
+)
 
 HEAD = "signal d_obs\nsignal d_goal\nsignal row\n"
 WORLD = make_environment("stlspec/GridWorld-v0", None, ("S.#", "..G"))
@@ -204,3 +214,32 @@ def test_a_spec_in_stamps_is_refused_with_the_way_out():
 def test_a_spec_with_a_period_is_taken():
     bundle = api.compile("time 100 ms\nsignal d_goal\nsoft g: eventually[0 s, 5 s] (d_goal < 1)")
     assert make_task(bundle, WORLD).endings == (RUNS,) * 5 + (GOAL,)
+
+
+PRODUCT = Task(
+    "goal", 4, 2, 1, ((2, 3), (0, 2), (1, 1), (3, 3)), (RUNS, RUNS, RUNS, VIOLATION), ((),) * 4, (7, 5, 6, 5)
+)
+"""Learner states 1 and 3 are both state 5 of the environment, with different memories."""
+
+
+def test_tables_of_the_environment_are_carried_to_learner_states():
+    assert lifted(PRODUCT, "abcdefgh") == ("h", "f", "g", "f")
+    assert [place(PRODUCT, state) for state in range(4)] == [7, 5, 6, 5]
+    task = make_task(compiled(SOFT), WORLD)
+    assert lifted(task, "abcdef") == tuple("abcdef")
+    assert place(task, 3) == 3
+
+
+@pytest.mark.parametrize(
+    ("states", "expected"),
+    [
+        ((5, 7, 5), (1, 0, 3)),  # the way back from 7 to 5 violates
+        ((5, 6, 5, 7), (1, 2, 1, 0)),
+        ((5, 7, 5, 6), (1, 0, 3, None)),  # nothing follows a violation
+        ((5, 5, 6), (1, None, None)),  # a jump
+        ((7, 5), (None, None)),  # begins elsewhere
+        ((), ()),
+    ],
+)
+def test_a_recording_is_followed_through_learner_states(states, expected):
+    assert followed(PRODUCT, states) == expected
