@@ -10,13 +10,16 @@ from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Declared
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
+    LabelExpectation,
     LetStatement,
     ParamStatement,
+    RankExpectation,
     RequirementStatement,
     SignalStatement,
     SpecStatement,
     TimeStatement,
-    UnsupportedStatement,
+    UseStatement,
+    VerdictExpectation,
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.statements import TIME_UNITS
@@ -36,8 +39,8 @@ def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
     }
     places: dict[str, Span] = {}
     for statement in syntax.statements:
-        if isinstance(statement, UnsupportedStatement):
-            what, way = _UNSUPPORTED[statement.word]
+        if isinstance(statement, UseStatement | VerdictExpectation | LabelExpectation | RankExpectation):
+            what, way = _UNSUPPORTED["use" if isinstance(statement, UseStatement) else "expect"]
             problems.append(diagnostic("S015", source=syntax.source, span=statement.span, what=what, help=way))
         if not isinstance(statement, SignalStatement | ParamStatement | LetStatement | RequirementStatement):
             continue

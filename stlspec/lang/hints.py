@@ -29,6 +29,9 @@ _TEMPORAL = frozenset(
     ).split()
 )
 """Terminals of the words that take an interval."""
+_CLOSING = {"LPAR": (")", "RPAR"), "LSQB": ("]", "RSQB"), "LBRACE": ("}", "RBRACE")}
+"""For each opening bracket the closing one, and its terminal."""
+_CLOSES = frozenset(terminal for _, terminal in _CLOSING.values())
 _CLAUSE_WORDS = {"depends": "on", "scale": "NUMBER", "bound": "NAME"}
 _SHOWN = {
     "NAME": "a name",
@@ -37,6 +40,8 @@ _SHOWN = {
     "UNIT": "a unit",
     "$END": "the end of the statement",
 }
+_WORDS = "depends on,on,scale,bound,unit,in,from,holds,fails,episode,at,margin,is,outranks".split(",")
+"""Words of clauses, as they are named where they fit."""
 _SIGNS = {
     "^": "**",
     "≥": ">=",
@@ -117,7 +122,8 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
         return None
     if token.type == "BAD_STRING":
         return failure.error("S006")
-    if token.type in ("BAD_CHARACTER", "LBRACE", "RBRACE"):
+    braces = token.type in ("LBRACE", "RBRACE") and failure.tokens[0].type != "EXPECT"
+    if token.type == "BAD_CHARACTER" or braces:
         sign = "," if str(token) == ";" and failure.brackets else _SIGNS.get(str(token))
         way = f"write `{sign}` in its place" if sign else "remove it; words and signs of the language are plain ASCII"
         return failure.error("S005", character=_quoted(str(token)), help=way)
@@ -257,12 +263,11 @@ def _open_bracket(failure: Failure) -> Diagnostic | None:
     if not failure.brackets:
         return _stray_bracket(failure)
     opening = failure.brackets[-1]
-    closing = ")" if opening.type == "LPAR" else "]"
-    wanted = "RPAR" if opening.type == "LPAR" else "RSQB"
+    closing, wanted = _CLOSING[opening.type]
     if wanted not in failure.expected or (failure.token is not None and failure.token.type == "COMMA"):
         return None
     label = Label(span_of(opening), "opened here", failure.source)
-    if failure.token is not None and failure.token.type in ("RPAR", "RSQB"):
+    if failure.token is not None and failure.token.type in _CLOSES:
         way = f"write `{closing}` in place of `{failure.token}`"
         return failure.error("S004", labels=(label,), closing=closing, help=way)
     last = _last_bound(failure, failure.tokens.index(opening)) if closing == "]" else None
@@ -287,7 +292,7 @@ def _last_bound(failure: Failure, opening: int) -> Token | None:
 
 def _stray_bracket(failure: Failure) -> Diagnostic | None:
     token = failure.token
-    if token is None or token.type not in ("RPAR", "RSQB"):
+    if token is None or token.type not in _CLOSES:
         return None
     return failure.error("S019", bracket=str(token))
 
@@ -350,14 +355,15 @@ def _expected(terminals: frozenset[str]) -> str:
         elif "PLUS" in terminals:
             named.append("an arithmetic operator")
         named += [text for terminal, text in _SHOWN.items() if terminal in terminals]
-    signs = {"COMMA": ",", "COLON": ":", "RPAR": ")", "RSQB": "]", "ASSIGN": "=", "LSQB": "["}
+    signs = {"COMMA": ",", "COLON": ":", "RPAR": ")", "RSQB": "]", "RBRACE": "}", "ASSIGN": "=", "LSQB": "["}
     if "AND" not in terminals and "NOT" not in terminals:
         signs_shown = [f"`{sign}`" for terminal, sign in signs.items() if terminal in terminals]
     else:
         signs_shown = [f"`{s}`" for t, s in signs.items() if t in terminals and t in ("RPAR", "RSQB", "COMMA")]
     named = signs_shown + named
-    words = ["depends on", "on", "scale", "bound", "unit", "in", "from"]
-    named += [f"`{w}`" for w in words if w.split()[0].upper().replace("UNIT", "UNIT_WORD") in terminals]
+    named += ["data in braces"] if "LBRACE" in terminals else []
+    named += ["`>=`"] if "GE" in terminals and "LT" not in terminals else []
+    named += [f"`{w}`" for w in _WORDS if w.split()[0].upper().replace("UNIT", "UNIT_WORD") in terminals]
     shown = named[:5]
     if len(shown) < 2:
         return shown[0] if shown else "nothing more"

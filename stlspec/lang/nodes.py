@@ -192,21 +192,81 @@ class RequirementStatement:
 
 
 @dataclass(frozen=True, slots=True)
-class UnsupportedStatement:
-    """A statement that the language has and this version does not run yet."""
+class UseStatement:
+    """`use "file.stl"`."""
 
     span: Span
-    word: str
+    path: Text
 
+
+@dataclass(frozen=True, slots=True)
+class DataFile:
+    """`"demo.csv" [episode 3]`: a file of demonstrations, or one of those in it, by number or by name."""
+
+    span: Span
+    path: Text
+    episode: Number | Text | None
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """`d_obs: [2, 1, 1]` in data that stands in the spec; numbers carry their sign."""
+
+    span: Span
+    name: Name
+    samples: tuple[Number | Truth, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class InlineData:
+    """`{d_obs: [2, 1, 1], time: [0, 1, 2]}`."""
+
+    span: Span
+    columns: tuple[Column, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VerdictExpectation:
+    """`expect NAME holds|fails on DATA [at K] [margin >= M]`."""
+
+    span: Span
+    requirement: Name
+    verdict: Name
+    data: DataFile | InlineData
+    at: Number | None
+    margin: Number | None
+    repeated: tuple[Name, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class LabelExpectation:
+    """`expect "demo.csv" is good|incomplete|bad`."""
+
+    span: Span
+    data: DataFile
+    label: Name
+
+
+@dataclass(frozen=True, slots=True)
+class RankExpectation:
+    """`expect "a.csv" outranks "b.csv"`."""
+
+    span: Span
+    better: DataFile
+    worse: DataFile
+
+
+ExpectStatement = VerdictExpectation | LabelExpectation | RankExpectation
 
 Statement = (
     SpecStatement
+    | UseStatement
     | TimeStatement
     | SignalStatement
     | ParamStatement
     | LetStatement
     | RequirementStatement
-    | UnsupportedStatement
+    | ExpectStatement
 )
 
 

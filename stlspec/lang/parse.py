@@ -31,7 +31,7 @@ from stlspec.lang.nodes import (
     SignalStatement,
     Statement,
     Text,
-    UnsupportedStatement,
+    VerdictExpectation,
     bounds,
     children,
     post_order,
@@ -62,6 +62,7 @@ _OPERAND_STARTS = frozenset(
 )
 _NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
 """Words that after a number begin a statement or a clause, in the wrong place: never units."""
+_CLAUSES = ("SPEC USE TIME DEPENDS ON SCALE BOUND UNIT_WORD IN FROM HOLDS FAILS EPISODE AT MARGIN IS OUTRANKS").split()
 _END = "$END"
 
 
@@ -101,8 +102,7 @@ def _automaton() -> _Automaton:
         terminals = {rule.expansion[0].name for rule in lark.rules if rule.origin.name in rules}
         canonical = {name for name in terminals if words[name] in rules}
         aliases["prefix" if rules is _PREFIX_RULES else "infix"] = frozenset(terminals - canonical)
-    clause = {"SPEC", "USE", "TIME", "DEPENDS", "ON", "SCALE", "BOUND", "UNIT_WORD", "IN", "FROM"}
-    contextual = frozenset(clause) | aliases["prefix"] | aliases["infix"]
+    contextual = frozenset(_CLAUSES) | aliases["prefix"] | aliases["infix"]
     return _Automaton(lark, aliases["prefix"], aliases["infix"], contextual)
 
 
@@ -178,7 +178,7 @@ def parse_formula(
 
 
 def _repeated(source: SourceText, statement: Statement) -> list[Diagnostic]:
-    if not isinstance(statement, SignalStatement | RequirementStatement):
+    if not isinstance(statement, SignalStatement | RequirementStatement | VerdictExpectation):
         return []
     return [diagnostic("S020", source=source, span=c.span, clause=c.text) for c in statement.repeated]
 
@@ -214,9 +214,6 @@ class _Feed:
         tokens = self.tokens
         if start == "statement" and not self._accepts(tokens[0].type):
             return None, describe(self._failure(0, beginning=True)), len(tokens)
-        if tokens[0].type == "EXPECT":
-            # Not run by this version, whatever stands in it: one diagnostic is enough.
-            return UnsupportedStatement(span_of(tokens[0]), "expect"), None, len(tokens)
         i = 0
         while i < len(tokens):
             token, width = self._read(i)
@@ -331,9 +328,9 @@ class _Feed:
         return token, end - i
 
     def _note_bracket(self, token: Token) -> None:
-        if token.type in ("LPAR", "LSQB"):
+        if token.type in ("LPAR", "LSQB", "LBRACE"):
             self.brackets.append(token)
-        elif token.type in ("RPAR", "RSQB") and self.brackets:
+        elif token.type in ("RPAR", "RSQB", "RBRACE") and self.brackets:
             self.brackets.pop()
 
     def _failure(self, i: int, *, beginning: bool = False) -> Failure:

@@ -47,6 +47,12 @@ def _unit(token: Token) -> nodes.Unit:
     return nodes.Unit(span_of(token), str(token))
 
 
+def _number(tokens: Sequence[Token]) -> nodes.Number:
+    """Return a number, or `inf`, that may carry a minus."""
+    value = float(tokens[-1])
+    return nodes.Number(_over(tokens), -value if len(tokens) > 1 else value, None)
+
+
 def _operator(rule: str, children: list[Child]) -> nodes.Operator:
     return nodes.Operator(span_of(children[0]), rule)
 
@@ -110,13 +116,59 @@ class TreeBuilder:
             repeated,
         )
 
-    def use(self, children: list[Child]) -> nodes.UnsupportedStatement:
+    def use(self, children: list[Child]) -> nodes.UseStatement:
         """`use "file"`."""
-        return nodes.UnsupportedStatement(_over(children), "use")
+        return nodes.UseStatement(_over(children), _text(children[1]))
 
-    def expect(self, children: list[Child]) -> nodes.UnsupportedStatement:
-        """`expect ...`."""
-        return nodes.UnsupportedStatement(_over(children), "expect")
+    def expect_verdict(self, children: list[Child]) -> nodes.VerdictExpectation:
+        """`expect NAME holds|fails on DATA`, and its clauses."""
+        clauses, repeated = _clauses(children[5:])
+        return nodes.VerdictExpectation(
+            _over(children),
+            _name(children[1]),
+            _name(children[2]),
+            children[4],
+            clauses.get("at"),
+            clauses.get("margin"),
+            repeated,
+        )
+
+    def expect_label(self, children: list[Child]) -> nodes.LabelExpectation:
+        """`expect DATA is LABEL`; the label is checked later."""
+        return nodes.LabelExpectation(_over(children), children[1], _name(children[3]))
+
+    def expect_rank(self, children: list[Child]) -> nodes.RankExpectation:
+        """`expect DATA outranks DATA`."""
+        return nodes.RankExpectation(_over(children), children[1], children[3])
+
+    def recording(self, children: list[Child]) -> nodes.DataFile:
+        """`"file" [episode NUMBER or "name"]`."""
+        episode = None
+        if len(children) > 1:
+            episode = _number(children[2:]) if children[2].type == "NUMBER" else _text(children[2])
+        return nodes.DataFile(_over(children), _text(children[0]), episode)
+
+    def inline(self, children: list[Child]) -> nodes.InlineData:
+        """`{NAME: [...], ...}`."""
+        columns = tuple(child for child in children if isinstance(child, nodes.Column))
+        return nodes.InlineData(_over(children), columns)
+
+    def column(self, children: list[Child]) -> nodes.Column:
+        """`NAME: [VALUE, ...]`."""
+        samples = tuple(child for child in children[3:-1] if not isinstance(child, Token))
+        return nodes.Column(_over(children), _name(children[0]), samples)
+
+    def sample(self, children: list[Child]) -> nodes.Number | nodes.Truth:
+        """Return one value of a column."""
+        return self.truth(children) if children[0].type in ("TRUE", "FALSE") else _number(children)
+
+    def at_clause(self, children: list[Child]) -> Clause:
+        """`at 3`, or `at -1`."""
+        return Clause("at", _number(children[1:]), children)
+
+    def margin_clause(self, children: list[Child]) -> Clause:
+        """`margin >= 0.5`."""
+        return Clause("margin", _number(children[2:]), children)
 
     def param(self, children: list[Child]) -> nodes.ParamStatement:
         """`param NAME [= [-] NUMBER [UNIT]] ["doc"]`."""

@@ -71,4 +71,4 @@ def test_a_spec_or_time_statement_out_of_place_is_reported_once():
 
 
 def test_what_this_version_does_not_run_is_said():
-    assert declared('use "a.stl"\nsignal x\nexpect a holds on {x: 1}')[1] == ["S015", "S015"]
+    assert declared('use "a.stl"\nsignal x\nexpect a holds on {x: [1]}')[1] == ["S015", "S015"]

@@ -60,7 +60,7 @@ hard vent:
 hard never depends on vent: !(high && X high && X X high)
 soft calm depends on vent, never: (valve R high) <-> (valve W high)""",
 ]
-BEGINS = re.compile(r"(spec|time|signal|param|let|hard|soft)\b")
+BEGINS = re.compile(r"(spec|time|signal|param|let|hard|soft|expect)\b")
 TOKEN = re.compile(r'#[^\n]*|"[^"\n]*"|[A-Za-z_][A-Za-z_0-9]*|[0-9.]+|[<>=!*&|:-]+|\S')
 
 

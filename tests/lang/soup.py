@@ -18,6 +18,7 @@ TOKENS = (
     'U S W R alw ev_ until_ ! & && | || -> => <-> <=> < <= > >= == != = + - * / ** ( ) [ ] { } , : := " "doc" # // '
     "x y p q d_obs abs min rate delta now t real bool tanh none 0 1 5 .5 1e400 12. s ms m/s step m "
     "ns min furlong § \\ ' ; ^ "
+    "holds fails episode at margin is outranks "
     "hrad sginal alwys x[t] x[t+1] [0,5] [5,2] [0 5] (d>1)"
 ).split()
 STARTS = ["signal x\n", "hard a: ", "soft b depends on a: ", "let p = ", "param T = ", "time ", "\n"]

@@ -97,3 +97,24 @@ def test_long_or_unprintable_text_is_shortened_in_messages():
     problem = only("signal x\nhard a: x > " + "9" * 500 + " " + "8" * 500)
     assert len(problem.message) < 60
     assert "\\u0001" in only("signal x\nhard a: x > \x01").message
+
+
+@pytest.mark.parametrize(
+    ("statement", "code", "says"),
+    [
+        ('expect a hold on "x"', "S018", "write `holds`"),
+        ('expect a holds "x"', "S001", "expected `on`"),
+        ("expect a holds on x", "S001", "expected a quoted text or data in braces"),
+        ('expect a holds on "x" margin > 3', "S001", "expected `>=`"),
+        ('expect a holds on "x" at 3 at 4', "S020", "keep one of the two"),
+        ("expect a holds on {x: [1, 2]", "S004", "write `}` after `]`"),
+        ("expect a holds on {x: [1, 2}", "S004", "write `]` in place of `}`"),
+        ("expect a holds on {x: 1}", "S001", "expected `[`"),
+        ("expect", "S002", "expected a name or a quoted text"),
+        ("use common.stl", "S001", "expected a quoted text"),
+    ],
+)
+def test_a_slip_in_an_expectation_has_its_way_out(statement, code, says):
+    problem = only(f"signal x\nhard a: x > 1\n{statement}")
+    assert problem.code == code
+    assert says in (problem.label, problem.help)

@@ -2,7 +2,18 @@
 
 import pytest
 
-from stlspec.lang.nodes import LetStatement, ParamStatement, RequirementStatement, SignalStatement, SpecStatement
+from stlspec.lang.nodes import (
+    DataFile,
+    LabelExpectation,
+    LetStatement,
+    ParamStatement,
+    RankExpectation,
+    RequirementStatement,
+    SignalStatement,
+    SpecStatement,
+    UseStatement,
+    VerdictExpectation,
+)
 from stlspec.lang.parse import parse, parse_formula
 from stlspec.lang.tree import OPERATORS, TreeBuilder
 from stlspec.source import SourceText, Span
@@ -260,6 +271,50 @@ def test_the_spec_statement_has_a_name_and_a_title():
     (spec,) = parse(SourceText.of("s", 'spec grid "A # title"')).statements
     assert isinstance(spec, SpecStatement)
     assert (spec.name.text, spec.title.text, spec.span) == ("grid", "A # title", Span(0, 21))
+
+
+def one(text):
+    syntax = parse(SourceText.of("s", text))
+    assert syntax.diagnostics == ()
+    (statement,) = syntax.statements
+    return statement
+
+
+def test_a_use_statement_has_the_path_as_written():
+    statement = one('use "../shared/signals.stl"')
+    assert isinstance(statement, UseStatement) and statement.path.text == "../shared/signals.stl"
+
+
+def test_an_expectation_of_a_verdict_has_data_sample_and_margin_in_any_order():
+    for clauses in ("at -1 margin >= 0.5", "margin >= .5 at -1"):
+        found = one(f'expect avoid fails on "d1.csv" episode 3\n {clauses}')
+        assert isinstance(found, VerdictExpectation)
+        assert (found.requirement.text, found.verdict.text) == ("avoid", "fails")
+        assert (found.data.path.text, found.data.episode.value) == ("d1.csv", 3)
+        assert (found.at.value, found.margin.value) == (-1, 0.5)
+
+
+def test_data_in_a_spec_keeps_signs_infinities_and_truth_values():
+    found = one("expect a holds on {x: [2, -1.5, inf, -inf],\n time: [0,\n 1], on: [true, false]}")
+    columns = {c.name.text: [s.value for s in c.samples] for c in found.data.columns}
+    assert columns == {"x": [2, -1.5, float("inf"), -float("inf")], "time": [0, 1], "on": [True, False]}
+    assert (found.at, found.margin) == (None, None)
+
+
+def test_labels_and_ranks_are_expected_of_files_or_of_one_episode_in_them():
+    label = one('expect "d.jsonl" episode "a detour" is incomplete')
+    assert isinstance(label, LabelExpectation)
+    assert (label.data.path.text, label.data.episode.text, label.label.text) == ("d.jsonl", "a detour", "incomplete")
+    rank = one('expect "a.csv" outranks\n "b.csv" episode 0')
+    assert isinstance(rank, RankExpectation) and isinstance(rank.better, DataFile)
+    assert (rank.better.path.text, rank.worse.path.text, rank.worse.episode.value) == ("a.csv", "b.csv", 0)
+
+
+@pytest.mark.parametrize("word", "holds fails on episode at margin is outranks".split())
+def test_the_words_of_expectations_are_names_everywhere_else(word):
+    text = f'signal {word}\nhard {word}_ok: {word} > {word} + 1\nexpect {word} holds on "f" at 1'
+    syntax = parse(SourceText.of("s", text))
+    assert syntax.diagnostics == () and syntax.statements[2].requirement.text == word
 
 
 def test_the_builder_has_a_callback_for_every_operator_and_no_other_name():
