@@ -143,23 +143,28 @@ def _loads(data: bytes) -> Bundle:
     return publish(bundle_file.load(data))
 
 
-def compile(spec: str | Path, params: Mapping[str, float | str] | None = None) -> Bundle:  # noqa: A001
+def compile(  # noqa: A001
+    spec: str | Path, params: Mapping[str, float | str] | None = None, *, folder: str | Path | None = None
+) -> Bundle:
     """Compile a spec.
 
     Args:    spec: the text of a spec, or the path of a spec file as a `Path`.
              params: values of params; a number is in the declared unit, a text such as "12s" is converted.
+             folder: where a text finds the files that it uses; None: it may use none. A file finds them beside it.
     Returns: the bundle.
     Raises:  SpecError: the text has errors (`.diagnostics`). InputError: the file cannot be used, or a param
              has no value.
     """
     if isinstance(spec, Path):
-        return publish(compile_source(files.read_source(spec), params))
+        return publish(compile_source(files.read_source(spec), params, files.read_used))
     if not isinstance(spec, str) or (spec.endswith(_ENDINGS) and len(spec.split()) == 1):
         shown = spec if isinstance(spec, str) else type(spec).__name__
         what = f"`compile` takes the text of a spec, or a `Path`, not {shown!r}"
         way = "for a file write compile(Path(...)), for a bundle load(...)"
         raise UsageError([diagnostic("D880", what=what, help=way)])
-    return publish(compile_source(SourceText.of("<text>", spec), params))
+    if folder is None:
+        return publish(compile_source(SourceText.of("<text>", spec), params))
+    return publish(compile_source(SourceText.of(str(Path(folder) / "<text>"), spec), params, files.read_used))
 
 
 def load(path: str | Path) -> Bundle:

@@ -98,3 +98,15 @@ def test_unknown_names_are_attribute_errors_and_dir_lists_the_surface() -> None:
     with pytest.raises(AttributeError, match="nothing"):
         _ = stlspec.nothing
     assert "compile" in dir(stlspec)
+
+
+def test_a_text_uses_files_only_of_a_folder_that_it_is_given(tmp_path: Path) -> None:
+    (tmp_path / "signals.stl").write_text("signal d")
+    text = 'use "signals.stl"\nhard safe: d > 1'
+    with pytest.raises(stlspec.SpecError, match="folder="):
+        stlspec.compile(text)
+    bundle = stlspec.compile(text, folder=tmp_path)
+    assert [s.name for s in bundle.signals] == ["d"]
+    assert pickle.loads(pickle.dumps(bundle)) == bundle
+    (tmp_path / "spec.stl").write_text(text)
+    assert stlspec.compile(tmp_path / "spec.stl").meaning_sha256 == bundle.meaning_sha256

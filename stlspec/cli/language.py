@@ -50,7 +50,7 @@ def _checked(path: Path, values: dict[str, str]) -> tuple[Diagnostic, ...]:
     if files.looks_like_bundle(path, data):
         files.read_spec(path, values)
         return ()
-    return check_source(files.decode(data, str(path)), values).diagnostics
+    return check_source(files.decode(data, str(path)), values, files.read_used).diagnostics
 
 
 def _summary(errors: int, warnings: int, n_files: int) -> str:

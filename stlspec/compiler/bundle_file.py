@@ -106,7 +106,7 @@ def source_sha256(bundle: BundleData) -> str:
 
 def _sources(bundle: BundleData) -> list[Json]:
     """Return the texts, under names relative to the main file."""
-    return [{"file": PurePath(name).name, "text": text} for name, text in bundle.sources]
+    return [{"file": name if i else PurePath(name).name, "text": text} for i, (name, text) in enumerate(bundle.sources)]
 
 
 def schema_text() -> str:

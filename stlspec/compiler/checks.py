@@ -13,6 +13,7 @@ from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cy
 from stlspec.compiler.inference import MANY_PROBLEMS, Inference
 from stlspec.compiler.model import BROKEN, FORMULA, Binding, Declared, Model, Typing
 from stlspec.compiler.names import declare
+from stlspec.compiler.templates import TemplateInference
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
     Call,
@@ -41,27 +42,44 @@ def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tupl
     Args:    bindings: values of params from outside; they replace those of the text.
     Returns: the model, complete only if no diagnostic is an error; all diagnostics of the text in order.
     """
-    problems = list(syntax.diagnostics)
+    files = (*syntax.used, syntax)
+    problems = [problem for file in files for problem in file.diagnostics]
     declared = declare(syntax, problems)
-    silent = (syntax.names | syntax.requirement_names | syntax.lost.names) - declared.places.keys()
-    inference = Inference(syntax, declared, silent, problems)
+    names = frozenset[str]().union(*(file.names | file.lost.names for file in files))
+    silent = (names | syntax.requirement_names) - declared.places.keys()
+    inference = TemplateInference(syntax, declared, silent, problems)
     units = _units(inference)
     params = _params(inference, bindings or {})
     kinds = _types(inference, units)
     order = _lets(inference)
     signals = _signals(inference, kinds, units)
+    inference.enter(syntax)
     for requirement in declared.requirements.values():
         inference.formula(requirement.formula)
         _clauses(syntax.source, requirement, problems)
     _graph(syntax, declared, problems)
     let_typings = {name: inference.scope[name] for name in order}
-    model = Model(syntax.source, declared, signals, params, order, let_typings, inference.typings, inference.intervals)
+    model = Model(
+        syntax.source,
+        declared,
+        signals,
+        params,
+        order,
+        let_typings,
+        inference.typings,
+        inference.intervals,
+        inference.calls,
+        tuple(file.source for file in (syntax, *syntax.used)),
+    )
     return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
 
 
 def _units(inference: Inference) -> dict[str, Dimension | None]:
     """Return the unit of each signal, None (any) for a broken one; their words may stand behind numbers now."""
-    units = {name: _unit_of(inference, statement) for name, statement in inference.declared.signals.items()}
+    units = {}
+    for name, statement in inference.declared.signals.items():
+        inference.enter(inference.declared.files[name])
+        units[name] = _unit_of(inference, statement)
     for unit in units.values():
         inference.quantities.known |= set(unit or ())
     return units
@@ -71,6 +89,7 @@ def _params(inference: Inference, bindings: Mapping[str, Binding]) -> dict[str, 
     """Put params into scope, bound from outside first; return those with a value."""
     params: dict[str, Param] = {}
     for name, statement in inference.declared.params.items():
+        inference.enter(inference.declared.files[name])
         typing = inference.infer(statement.number) if statement.number else Typing("real", None, True)
         unit = statement.number.unit.text if statement.number and statement.number.unit else None
         given = bindings.get(name)
@@ -85,7 +104,10 @@ def _params(inference: Inference, bindings: Mapping[str, Binding]) -> dict[str, 
 
 def _types(inference: Inference, units: Mapping[str, Dimension | None]) -> dict[str, str]:
     """Put signals into scope; return the type of each."""
-    kinds = {name: _type_of(inference, statement) for name, statement in inference.declared.signals.items()}
+    kinds = {}
+    for name, statement in inference.declared.signals.items():
+        inference.enter(inference.declared.files[name])
+        kinds[name] = _type_of(inference, statement)
     for name, kind in kinds.items():
         inference.scope[name] = Typing("real", units[name]) if kind == "real" else FORMULA
     return kinds
@@ -97,6 +119,7 @@ def _signals(
     """Resolve the ranges of signals, in which params and lets may stand."""
     found = {}
     for name, statement in inference.declared.signals.items():
+        inference.enter(inference.declared.files[name])
         low, high = None, None
         if statement.range is not None:
             low, high = _range_of(inference, statement, kinds[name], units[name])
@@ -159,7 +182,7 @@ def _range_of(
     return found if found is not None else (None, None)
 
 
-def _lets(inference: Inference) -> tuple[str, ...]:
+def _lets(inference: TemplateInference) -> tuple[str, ...]:
     """Type the lets, each after those that it uses, and put them into scope."""
     lets = inference.declared.lets
     uses = {name: _used_lets(let, lets) for name, let in lets.items()}
@@ -167,14 +190,15 @@ def _lets(inference: Inference) -> tuple[str, ...]:
         order = tuple(TopologicalSorter(uses).static_order())
     except CycleError as error:
         circle: list[str] = error.args[1][::-1]
-        _report_circle(inference, circle)
+        inference.problems.append(_let_circle(inference.declared, circle))
         order = tuple(lets)
         inference.scope.update(dict.fromkeys(order, BROKEN))
     for name in order:
         let = lets[name]
         if name in inference.scope:
             continue
-        inference.scope[name] = _template(inference, let) if let.arguments else inference.infer(let.body)
+        inference.enter(inference.declared.files[name])
+        inference.scope[name] = inference.template(let) if let.arguments else inference.infer(let.body)
     return order
 
 
@@ -183,33 +207,10 @@ def _used_lets(let: LetStatement, lets: Mapping[str, LetStatement]) -> list[str]
     return [name for name in names_in(let.body) if name in lets and name not in arguments]
 
 
-def _template(inference: Inference, let: LetStatement) -> Typing:
-    problem = diagnostic(
-        "S015",
-        source=inference.source,
-        span=let.arguments[0].span.to(let.arguments[-1].span),
-        what="a `let` with arguments",
-        help="write the formula out for each use",
-    )
-    inference.problems.append(problem)
-    return BROKEN
-
-
-def _report_circle(inference: Inference, circle: list[str]) -> None:
-    places = inference.declared.places
-    labels = tuple(
-        Label(places[name], f"`{name}` uses `{used}`", inference.source) for name, used in pairwise(circle[1:])
-    )
-    inference.problems.append(
-        diagnostic(
-            "N104",
-            source=inference.source,
-            span=places[circle[0]],
-            labels=labels,
-            name=circle[0],
-            cycle=" -> ".join(circle),
-        )
-    )
+def _let_circle(declared: Declared, circle: list[str]) -> Diagnostic:
+    labels = tuple(declared.place(name, f"`{name}` uses `{used}`") for name, used in pairwise(circle[1:]))
+    first, shown = declared.place(circle[0]), " -> ".join(circle)
+    return diagnostic("N104", source=first.source, span=first.span, labels=labels, name=circle[0], cycle=shown)
 
 
 def names_in(root: Expression) -> Iterable[str]:
@@ -275,6 +276,9 @@ def _edge(
     if other is None:
         if on.text in syntax.requirement_names or on.text in syntax.lost.names or syntax.lost.nameless:
             return None
+        if on.text in declared.elsewhere:
+            there = declared.elsewhere[on.text]
+            return diagnostic("N112", source=source, span=on.span, labels=(there,), name=on.text)
         close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
         what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
         way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"

@@ -17,9 +17,10 @@ from stlspec.compiler.lower import lower
 from stlspec.compiler.model import Binding, Model
 from stlspec.compiler.quantities import scaled
 from stlspec.errors import Diagnostic, InputError, SpecError, diagnostic
-from stlspec.lang.parse import Syntax, parse
+from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
 from stlspec.lang.units import NANOSECONDS, STEP
+from stlspec.lang.using import Loader, parse_with_uses
 from stlspec.source import SourceText
 
 _VALUE = re.compile(
@@ -41,34 +42,41 @@ class CheckResult:
         return tuple(d for d in self.diagnostics if d.severity == "error")
 
 
-def check_source(source: SourceText, params: Mapping[str, float | str] | None = None) -> CheckResult:
+def check_source(
+    source: SourceText, params: Mapping[str, float | str] | None = None, load: Loader | None = None
+) -> CheckResult:
     """Check a text; params may stay without a value.
 
+    Args:    load: reads the files that the text uses; None: it has no files.
     Raises: InputError: a given param does not exist or its value cannot be read.
     """
-    return _check(parse(source), params)
+    return check_syntax(parse_with_uses(source, load), params)
 
 
-def _check(syntax: Syntax, params: Mapping[str, float | str] | None) -> CheckResult:
+def check_syntax(syntax: Syntax, params: Mapping[str, float | str] | None = None) -> CheckResult:
+    """Check statements that are parsed; see `check_source`."""
     model, diagnostics = check(syntax)
     if params:
         model, diagnostics = check(syntax, _bind(model, params))
     return CheckResult(model, diagnostics)
 
 
-def compile_source(source: SourceText, params: Mapping[str, float | str] | None = None) -> BundleData:
+def compile_source(
+    source: SourceText, params: Mapping[str, float | str] | None = None, load: Loader | None = None
+) -> BundleData:
     """Compile a text.
 
     Args:    params: values by name; a number is in the declared unit, a text such as "12s" is converted.
+             load: reads the files that the text uses; None: it has no files.
     Raises: SpecError: the text has errors. InputError: a param has no value, does not exist, or cannot be read.
     """
-    return compile_syntax(parse(source), params)
+    return compile_syntax(parse_with_uses(source, load), params)
 
 
 def compile_syntax(syntax: Syntax, params: Mapping[str, float | str] | None = None) -> BundleData:
     """Compile statements that are parsed, or made by a program; see `compile_source`."""
     source = syntax.source
-    result = _check(syntax, params)
+    result = check_syntax(syntax, params)
     if result.errors:
         raise SpecError(result.errors)
     model = result.model
@@ -76,8 +84,8 @@ def compile_syntax(syntax: Syntax, params: Mapping[str, float | str] | None = No
         raise SpecError([diagnostic("G506", file=source.name)])
     unbound = [name for name in model.declared.params if name not in model.params]
     if unbound:
-        places = model.declared.places
-        raise InputError(diagnostic("N106", source=source, span=places[n], name=n) for n in unbound)
+        places = [(n, model.declared.place(n)) for n in unbound]
+        raise InputError(diagnostic("N106", source=p.source, span=p.span, name=n) for n, p in places)
     return lower(model)
 
 

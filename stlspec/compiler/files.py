@@ -77,6 +77,20 @@ def read_source(path: str | Path) -> SourceText:
     return decode(read_bytes(path), str(path))
 
 
+def read_used(path: str) -> SourceText:
+    """Read a file that a spec uses: a regular one, so that no device or pipe is waited for.
+
+    Raises: InputError: as `read_source`; B706: it is a compiled bundle.
+    """
+    if Path(path).exists() and not Path(path).is_file():
+        way = "name the file of a spec"
+        raise InputError([diagnostic("S092", file=path, verb="read", problem="it is no regular file", help=way)])
+    data = read_bytes(path)
+    if looks_like_bundle(path, data):
+        raise InputError([diagnostic("B706", file=path)])
+    return decode(data, path)
+
+
 def decode(data: bytes, name: str) -> SourceText:
     """Turn the bytes of a spec into text; see `read_source`."""
     if _is_mesh(data):
@@ -128,4 +142,4 @@ def read_spec(path: str | Path, params: Mapping[str, float | str] | None = None)
         return bundle
     if len(data) > LARGEST_SPEC:
         raise InputError([diagnostic("S093", file=str(path), size=len(data), limit=LARGEST_SPEC)])
-    return compile_source(decode(data, str(path)), params)
+    return compile_source(decode(data, str(path)), params, read_used)

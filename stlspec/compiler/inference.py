@@ -5,7 +5,7 @@ each root cause: what is reported is "broken", and whatever holds it stays silen
 one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always (d > 1)` and `d + 2`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from stlspec.compiler.constants import FOLDABLE, fold
@@ -63,8 +63,7 @@ class Inference:
     """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
 
     def __init__(self, syntax: Syntax, declared: Declared, silent: frozenset[str], problems: list[Diagnostic]) -> None:
-        self.source = syntax.source
-        self.nameless = syntax.lost.nameless
+        self.enter(syntax)
         self.declared = declared
         self.silent = silent
         self.problems = problems
@@ -73,6 +72,20 @@ class Inference:
         self.intervals: dict[int, tuple[int, int | None]] = {}
         self.quantities = Quantities(self._report)
         self._said: set[tuple[str, str]] = set()
+
+    def enter(self, file: Syntax) -> None:
+        """Go on with expressions of another file: names are those that it sees, places are in its text."""
+        self.source = file.source
+        self.nameless = file.lost.nameless
+        self._names_seen = file.names.union(*(other.names for other in file.used))
+
+    def sees(self, name: str) -> bool:
+        """Tell whether a name that is in scope is declared in this file or one that it uses."""
+        return name in self.scope and (name in self._names_seen or name not in self.declared.files)
+
+    def known(self) -> Iterable[str]:
+        """Return the names that may have been meant by one that is not known."""
+        return self.scope
 
     def _report(self, code: str, span: Span, labels: tuple[Label, ...] = (), **fields: Any) -> Typing:
         """Report a problem; one with a name only once in each statement."""
@@ -135,11 +148,12 @@ class Inference:
 
     def _name(self, node: Name) -> Typing:
         name = node.text
-        if name in self.scope:
+        if self.sees(name):
             return self.scope[name]
-        if name in self.declared.requirements:
-            place = Label(self.declared.places[name], "declared here", self.source)
-            return self._report("N105", node.span, (place,), name=name)
+        if name in self.declared.requirements and self.declared.files[name].source is self.source:
+            return self._report("N105", node.span, (self.declared.place(name),), name=name)
+        if name in self.declared.elsewhere:
+            return self._report("N112", node.span, (self.declared.elsewhere[name],), name=name)
         if name in self.silent:
             return BROKEN
         if name in NOW:
@@ -149,13 +163,16 @@ class Inference:
             )
         if self.nameless:
             return BROKEN
+        if name in self.scope:
+            way = "declare it in this file or use the file that does; what the using file declares is not seen here"
+            return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
-        close = closest(name, [*self.scope, "now", "true", "false", "inf"]) if few else None
+        close = closest(name, [*self.known(), "now", "true", "false", "inf"]) if few else None
         return self._report("N101", node.span, name=name, help=_way_out(name, close))
 
     def _index(self, node: Index) -> Typing:
         inner = self._name(node.name)
-        if isinstance(node.index, Name) and node.index.text in NOW and node.index.text not in self.scope:
+        if isinstance(node.index, Name) and node.index.text in NOW and not self.sees(node.index.text):
             return inner
         if inner == BROKEN:
             return BROKEN
@@ -184,13 +201,13 @@ class Inference:
 
     def _unknown_function(self, node: Call) -> Typing:
         name = node.function.text
-        if name in self.declared.lets or name in self.silent:
-            if name in self.declared.lets and not self.declared.lets[name].arguments:
-                way = f"write `{name}` without arguments"
-                return self._report("N103", node.function.span, name=name, help=way)
+        if self.sees(name):
+            return self._report("N103", node.function.span, name=name, help=f"write `{name}` without arguments")
+        if name in self.silent or self.nameless:
             return BROKEN
-        close = closest(name, [*FUNCTIONS, *OPERATOR_WORDS])
-        way = f"did you mean `{close}`?" if close else f"the functions are {', '.join(FUNCTIONS)}"
+        templates = [other for other, let in self.declared.lets.items() if let.arguments and self.sees(other)]
+        close = closest(name, [*templates, *FUNCTIONS, *OPERATOR_WORDS])
+        way = f"did you mean `{close}`?" if close else f"the functions are {', '.join([*FUNCTIONS, *templates[:5]])}"
         return self._report("N103", node.function.span, name=name, help=way)
 
     def _prefix(self, node: Prefix, below: Typing) -> Typing:
@@ -212,7 +229,7 @@ class Inference:
         if len(node.operators) > 1 and word in ("until", "since", "unless", "release", "iff"):
             left = self.source.slice(node.operands[0].span.to(node.operands[1].span))
             operator = node.operators[1]
-            return self._report("S009", operator.span, operator=operator.word, left=_short(left))
+            return self._report("S009", operator.span, operator=operator.word, left=short(left))
         if self._means_at_least(node, below):
             return BROKEN
         kinds = [self._need_formula(operand).kind for operand in node.operands]
@@ -222,7 +239,7 @@ class Inference:
         """Report `x => 5`, an implication between numbers, as the comparison that was meant."""
         if any(typing.kind != "real" for typing in below) or self.source.slice(node.operators[0].span) != "=>":
             return False
-        left, right = (_short(self.source.slice(operand.span)) for operand in node.operands)
+        left, right = (short(self.source.slice(operand.span)) for operand in node.operands)
         way = f"`=>` means `implies`; to compare write `{left} >= {right}`"
         self._report("T201", node.span, help=way)
         return True
@@ -263,7 +280,7 @@ class Inference:
             return Typing("real", unit, True)
         value = fold(op, [v for v in values if v is not None])
         if value != value:
-            return self._report("T207", span, text=_short(self.source.slice(span)))
+            return self._report("T207", span, text=short(self.source.slice(span)))
         return Typing("real", unit, True, value)
 
     def _all_real(self, nodes: Sequence[Expression], what: str) -> bool:
@@ -288,7 +305,7 @@ class Inference:
         typing = self.typings[id(node)]
         if typing.kind != "real":
             return typing
-        text = _short(self.source.slice(node.span))
+        text = short(self.source.slice(node.span))
         self._report("T201", node.span, help=f"compare it with something, for instance `{text} > 0`")
         self.typings[id(node)] = BROKEN
         return BROKEN
@@ -345,7 +362,7 @@ class Inference:
         return low, high
 
 
-def _short(text: str) -> str:
+def short(text: str) -> str:
     """Cut a piece of source to what fits into a message."""
     flat = " ".join(text.split())
     return flat if len(flat) <= 30 else flat[:29] + "…"

@@ -4,8 +4,10 @@ In: a `Model` without errors whose params are bound. Out: `BundleData`. Lets are
 and every expression bottom-up, so that neither a deep formula nor a chain of a thousand lets needs a deep stack.
 """
 
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from pathlib import PurePath
 from types import MappingProxyType
 
 from stlspec.compiler.bundle import Bounding, BundleData, Requirement, Strength
@@ -14,7 +16,7 @@ from stlspec.compiler.dependencies import ancestors, dependency_weights, softmax
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.inference import NOW, SAME_UNIT
 from stlspec.compiler.ir import Builder, Interval, reachable
-from stlspec.compiler.model import Model
+from stlspec.compiler.model import Instance, Model
 from stlspec.compiler.quantities import SAME, conversion, scaled
 from stlspec.lang.nodes import (
     Call,
@@ -41,7 +43,10 @@ _COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
 def lower(model: Model) -> BundleData:
     """Make the bundle of a checked model."""
     lowering = _Lowering(model)
-    lets = {name: lowering.expression(model.declared.lets[name].body) for name in model.let_order}
+    for name in model.let_order:
+        let = model.declared.lets[name]
+        if not let.arguments:
+            lowering.names[name] = lowering.expression(let.body)
     statements = list(model.declared.requirements.values())
     roots = [lowering.expression(statement.formula) for statement in statements]
     nodes, index = reachable(lowering.builder.nodes, roots)
@@ -60,10 +65,10 @@ def lower(model: Model) -> BundleData:
         params=tuple(model.params.values()),
         requirements=requirements,
         nodes=nodes,
-        names=MappingProxyType({name: index[root] for name, root in lets.items() if root in index}),
+        names=MappingProxyType({name: index[root] for name, root in lowering.names.items() if root in index}),
         raw_weights=raw,
         weights=softmax(raw),
-        sources=((model.source.name, model.source.text),),
+        sources=_sources(model),
     )
 
 
@@ -83,6 +88,13 @@ def _requirement(model: Model, statement: RequirementStatement, root: int, horiz
     )
 
 
+def _sources(model: Model) -> tuple[tuple[str, str], ...]:
+    """Return the texts of the spec, main file first, the others under their way from the folder of the main file."""
+    folder = os.path.dirname(model.source.name) or "."  # noqa: PTH120 - `Path` cannot go up
+    others = [(PurePath(os.path.relpath(s.name, folder)).as_posix(), s.text) for s in model.sources[1:]]
+    return ((model.source.name, model.source.text), *others)
+
+
 def _one_line(text: str) -> str:
     """Put a formula on one line, its comments left out."""
     lines = (line.split("#")[0].split("//")[0] for line in text.split("\n"))
@@ -90,16 +102,23 @@ def _one_line(text: str) -> str:
 
 
 class _Lowering:
-    """Makes nodes of the DAG from expressions; `made` remembers the node of each expression."""
+    """Makes nodes of the DAG from expressions.
+
+    made: the node of each expression at hand. names: of each let so far. at: where typings are found, the model or
+    the instance of a template whose body is lowered; arguments: the nodes that its arguments are.
+    """
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.builder = Builder()
-        self.lets: dict[str, int] = {}
+        self.names: dict[str, int] = {}
         self.made: dict[int, int] = {}
+        self.at: Model | Instance = model
+        self.arguments: Mapping[str, int] = {}
+        self._instances: dict[int, int] = {}
 
     def expression(self, root: Expression) -> int:
-        """Lower `root`; a let's name is known from then on by `name_let`."""
+        """Lower `root`."""
         for node in post_order(root):
             self.made[id(node)] = self._node(node, [self.made[id(child)] for child in children(node)])
         return self.made[id(root)]
@@ -129,11 +148,12 @@ class _Lowering:
         return self.builder.add("const", value=value)
 
     def _name(self, name: str) -> int:
-        declared = self.model.declared
+        if name in self.arguments:
+            return self.arguments[name]
         if name in self.model.params:
             return self._constant(self.model.params[name].value)
-        if name in declared.lets:
-            return self.made[id(declared.lets[name].body)]
+        if name in self.names:
+            return self.names[name]
         signal = self.model.signals.get(name)
         if signal is None:
             assert name in NOW
@@ -149,7 +169,7 @@ class _Lowering:
 
     def _converted(self, expressions: Sequence[Expression], made: Sequence[int]) -> list[int]:
         """Bring operands that are joined to the unit of the first one that has a unit."""
-        units = [self.model.typing(e).unit for e in expressions]
+        units = [self.at.typing(e).unit for e in expressions]
         target: Dimension | None = next((u for u in units if u is not None), None)
         factors = [conversion(unit, target) or SAME for unit in units]
         return [self._scaled(i, factor) for i, factor in zip(made, factors, strict=True)]
@@ -166,12 +186,25 @@ class _Lowering:
 
     def _call(self, node: Call, below: list[int]) -> int:
         name = node.function.text
+        instance = self.at.calls.get(id(node))
+        if instance is not None:
+            return self._expanded(instance, below)
         if name in SAME_UNIT:
             below = self._converted(node.arguments, below)
         return self._real(name, below)
 
+    def _expanded(self, instance: Instance, arguments: Sequence[int]) -> int:
+        """Lower the body of a template, once for each distinct list of arguments."""
+        if id(instance) not in self._instances:
+            outer = (self.at, self.arguments, self.made)
+            names = [argument.text for argument in instance.template.arguments]
+            self.at, self.arguments, self.made = instance, dict(zip(names, arguments, strict=True)), {}
+            self._instances[id(instance)] = self.expression(instance.template.body)
+            self.at, self.arguments, self.made = outer
+        return self._instances[id(instance)]
+
     def _interval(self, operator: Operator) -> Interval:
-        return self.model.intervals[id(operator.interval)] if operator.interval is not None else _UNBOUNDED
+        return self.at.intervals[id(operator.interval)] if operator.interval is not None else _UNBOUNDED
 
     def _not(self, operand: int) -> int:
         below = self.builder.nodes[operand]

@@ -10,49 +10,44 @@ from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Declared
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
-    LabelExpectation,
     LetStatement,
     ParamStatement,
-    RankExpectation,
     RequirementStatement,
     SignalStatement,
     SpecStatement,
+    Statement,
     TimeStatement,
-    UseStatement,
-    VerdictExpectation,
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.statements import TIME_UNITS
 from stlspec.lang.units import NANOSECONDS, STEP
 from stlspec.source import Span
 
-_UNSUPPORTED = {
-    "use": ("`use`", "copy the declarations into this file"),
-    "expect": ("`expect`", "put it behind a `#`, and run `stlspec score` on the file instead"),
-}
-
 
 def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
-    """Collect the declarations of `syntax`; what is wrong with them is added to `problems`."""
+    """Collect what `syntax` and the files it uses declare; what is wrong with it is added to `problems`."""
     tables: dict[type, dict[str, object]] = {
         kind: {} for kind in (SignalStatement, ParamStatement, LetStatement, RequirementStatement)
     }
     places: dict[str, Span] = {}
-    for statement in syntax.statements:
-        if isinstance(statement, UseStatement | VerdictExpectation | LabelExpectation | RankExpectation):
-            what, way = _UNSUPPORTED["use" if isinstance(statement, UseStatement) else "expect"]
-            problems.append(diagnostic("S015", source=syntax.source, span=statement.span, what=what, help=way))
-        if not isinstance(statement, SignalStatement | ParamStatement | LetStatement | RequirementStatement):
-            continue
-        name = statement.name
-        if name.text in places:
-            first = Label(places[name.text], "first declared here", syntax.source)
-            problems.append(diagnostic("N102", source=syntax.source, span=name.span, labels=(first,), name=name.text))
-            continue
-        places[name.text] = name.span
-        tables[type(statement)][name.text] = statement
+    files: dict[str, Syntax] = {}
+    elsewhere: dict[str, Label] = {}
+    for file in (*syntax.used, syntax):
+        for statement in file.statements:
+            if not isinstance(statement, SignalStatement | ParamStatement | LetStatement | RequirementStatement):
+                continue
+            name = statement.name
+            if isinstance(statement, RequirementStatement) and file is not syntax:
+                elsewhere[name.text] = Label(name.span, "stated here", file.source)
+                continue
+            if name.text in places:
+                first = Label(places[name.text], "first declared here", files[name.text].source)
+                problems.append(diagnostic("N102", source=file.source, span=name.span, labels=(first,), name=name.text))
+                continue
+            places[name.text], files[name.text] = name.span, file
+            tables[type(statement)][name.text] = statement
     spec = _header(syntax, problems)
-    time = _time(syntax, problems)
+    time = _agreed(syntax, _time(syntax, problems), problems)
     return Declared(
         spec_name=spec.name.text if spec else "",
         title=spec.title.text if spec and spec.title else None,
@@ -62,6 +57,8 @@ def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
         lets=tables[LetStatement],  # type: ignore[arg-type]
         requirements=tables[RequirementStatement],  # type: ignore[arg-type]
         places=places,
+        files=files,
+        elsewhere=elsewhere,
         time_known=time is not None,
     )
 
@@ -91,6 +88,28 @@ def _time(syntax: Syntax, problems: list[Diagnostic]) -> TimeBase | None:
     if not found:
         return None if syntax.lost.time else TimeBase("step", STEP, 1)
     return _time_base(syntax, found[0], problems)
+
+
+def _agreed(syntax: Syntax, time: TimeBase | None, problems: list[Diagnostic]) -> TimeBase | None:
+    """Return the time base if no used file measures time in another way: its bounds would mean something else."""
+    before = len(problems)
+    own = [Label(s.span, "the time of this file", syntax.source) for s in syntax.statements if _is_time(s)]
+    for statement, direct in syntax.uses:
+        for file in (*direct.used, direct):
+            theirs = [s for s in file.statements if _is_time(s)]
+            other = _time(file, problems) if theirs else None
+            if other is None or time is None or other == time:
+                continue
+            there = Label(theirs[0].span, "another time there", file.source)
+            written = file.source.slice(theirs[0].span)
+            span, labels = statement.span, (there, *own[:1])
+            problems.append(diagnostic("U307", source=syntax.source, span=span, labels=labels, time=written))
+            break
+    return time if len(problems) == before else None
+
+
+def _is_time(statement: Statement) -> bool:
+    return isinstance(statement, TimeStatement)
 
 
 def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnostic]) -> TimeBase | None:

@@ -103,6 +103,17 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "B706",
+        "a bundle where a text is needed",
+        "error",
+        message="this is a compiled bundle, not the text of a spec",
+        help="name the spec that it was compiled from",
+        explanation="A bundle is complete: nothing of it can be used by another spec.",
+        bad='# use "base.stlb"',
+        good='# use "base.stl"',
+        kind="shown",
+    ),
+    Code(
         "D880",
         "a call that cannot be done",
         "error",

@@ -158,16 +158,6 @@ CODES: tuple[Code, ...] = (
         good="spec early\n" + _D + _ONE,
     ),
     Code(
-        "S015",
-        "not in this version",
-        "error",
-        message="{what} cannot be run by this version of stlspec",
-        help="{help}",
-        explanation="The language has this, and a later version runs it.",
-        bad=_D + _ONE + 'use "common.stl"\n',
-        good=_D + _ONE,
-    ),
-    Code(
         "S016",
         "nothing is stated",
         "error",

@@ -144,4 +144,16 @@ CODES: tuple[Code, ...] = (
         bad='signal x unit "m"\nhard ok: always (exp(x) > 1)\n',
         good='signal x unit "m"\nhard ok: always (exp(x / 1 m) > 1)\n',
     ),
+    Code(
+        "U307",
+        "a used file with another time",
+        "error",
+        message="the used file says `{time}`, and this one measures time in another way",
+        help="write `{time}` here too, or leave it out there",
+        explanation="Bounds in the used file are meant in its time. A file without a `time` statement of its own may "
+        "be used under any.",
+        bad='# time s      beside: use "base.stl"      where base.stl says: time 100 ms',
+        good="# time s      in both files",
+        kind="shown",
+    ),
 )

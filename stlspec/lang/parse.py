@@ -31,6 +31,7 @@ from stlspec.lang.nodes import (
     SignalStatement,
     Statement,
     Text,
+    UseStatement,
     VerdictExpectation,
     bounds,
     children,
@@ -71,7 +72,8 @@ class Syntax:
     """What a text says: its good statements, and one diagnostic for each broken one.
 
     names: what the text declares. lost: what broken statements may have been meant to declare; uses of it are
-    not reported a second time.
+    not reported a second time. uses: each `use` with its file, and used: these and the files that they use, each
+    after its own; both empty unless `using.parse_with_uses` made this.
     """
 
     source: SourceText
@@ -81,6 +83,8 @@ class Syntax:
     names: frozenset[str]
     requirement_names: frozenset[str]
     lost: Lost = NOTHING_LOST
+    uses: tuple[tuple[UseStatement, "Syntax"], ...] = ()
+    used: tuple["Syntax", ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,17 +110,21 @@ def _automaton() -> _Automaton:
     return _Automaton(lark, aliases["prefix"], aliases["infix"], contextual)
 
 
-def parse(source: SourceText) -> Syntax:
-    """Parse every statement of `source`; a broken one costs its neighbours nothing."""
+def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
+    """Parse every statement of `source`; a broken one costs its neighbours nothing.
+
+    names: declared elsewhere, by the files that the text uses; what reads as a name in formulas depends on them.
+    """
     automaton = _automaton()
     pieces = cut(source, automaton.lark)
+    names |= pieces.names
     statements: list[Statement] = []
     problems: list[Diagnostic] = []
     broken: list[Sequence[Token]] = []
     for tokens in pieces.statements:
         rest = tokens
         while rest:
-            node, problem, used = _parsed(automaton, source, rest, pieces.names)
+            node, problem, used = _parsed(automaton, source, rest, names)
             if node is not None:
                 statements.append(node)
             if problem is not None:

@@ -9,7 +9,15 @@ import pytest
 
 from stlspec.compiler import bundle_file, files
 from stlspec.compiler.compiling import compile_source
-from stlspec.compiler.files import looks_like_bundle, read_bundle, read_bytes, read_source, read_spec, write_bytes
+from stlspec.compiler.files import (
+    looks_like_bundle,
+    read_bundle,
+    read_bytes,
+    read_source,
+    read_spec,
+    read_used,
+    write_bytes,
+)
 from stlspec.errors import BundleError, InputError, SpecError, UsageError
 from stlspec.source import SourceText
 
@@ -134,3 +142,34 @@ def test_a_link_is_written_through_and_a_device_is_not_replaced(tmp_path: Path) 
     assert (link.is_symlink(), real.read_bytes()) == (True, b"new")
     files.write_bytes("/dev/null", b"gone")
     assert not Path("/dev/null").is_file()
+
+
+def test_a_spec_file_uses_files_beside_it_and_its_bundle_reads_none(tmp_path, monkeypatch):
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "signals.stl").write_text("signal d\nparam r = 1\n")
+    (tmp_path / "spec.stl").write_text('use "lib/signals.stl"\nhard safe: always (d > r)\n')
+    (tmp_path / "one.stl").write_text("signal d\nparam r = 1\nhard safe: always (d > r)\n")
+    split = read_spec(tmp_path / "spec.stl", {"r": 2})
+    assert bundle_file.meaning_sha256(split) == bundle_file.meaning_sha256(read_spec(tmp_path / "one.stl", {"r": 2}))
+    monkeypatch.chdir(tmp_path)
+    for way in ("spec.stl", "./spec.stl", "lib/../spec.stl", tmp_path / "spec.stl"):
+        assert bundle_file.dump(read_spec(way, {"r": 2})) == bundle_file.dump(split)
+    assert [name for name, _ in bundle_file.load(bundle_file.dump(split)).sources] == ["spec.stl", "lib/signals.stl"]
+    (tmp_path / "lib" / "signals.stl").write_text("signal d\nparam r = 1  # another text\n")
+    changed = read_spec(tmp_path / "spec.stl", {"r": 2})
+    assert bundle_file.meaning_sha256(changed) == bundle_file.meaning_sha256(split)
+    assert bundle_file.source_sha256(changed) != bundle_file.source_sha256(split)
+    data = bundle_file.dump(split)
+    (tmp_path / "lib" / "signals.stl").unlink()
+    assert bundle_file.load(data).requirements[0].name == "safe"
+
+
+def test_a_used_file_is_a_regular_file_with_the_text_of_a_spec(tmp_path):
+    bundle = tmp_path / "b.stlb"
+    bundle.write_bytes(bundle_file.dump(compile_source(SourceText.of("s", SPEC))))
+    assert code_of(InputError, read_used, str(bundle)) == "B706"
+    assert code_of(InputError, read_used, str(tmp_path)) == "S092"
+    os.mkfifo(tmp_path / "pipe")
+    assert code_of(InputError, read_used, str(tmp_path / "pipe")) == "S092"
+    (tmp_path / "mesh.stl").write_bytes(ASCII_MESH)
+    assert code_of(InputError, read_used, str(tmp_path / "mesh.stl")) == "S090"

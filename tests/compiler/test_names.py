@@ -1,5 +1,7 @@
 """What a text declares, and which statements may stand only once."""
 
+from dataclasses import replace
+
 import pytest
 
 from stlspec.compiler.bundle import TimeBase
@@ -70,5 +72,10 @@ def test_a_spec_or_time_statement_out_of_place_is_reported_once():
     assert declared("signal x\nspec a")[1] == ["S014"]
 
 
-def test_what_this_version_does_not_run_is_said():
-    assert declared('use "a.stl"\nsignal x\nexpect a holds on {x: [1]}')[1] == ["S015", "S015"]
+def test_requirements_of_used_files_are_kept_apart():
+    used = parse(SourceText.of("base.stl", "signal d\nhard safe: d > 1"))
+    syntax = replace(parse(SourceText.of("s", "hard safe: d > 2")), used=(used,))
+    problems = []
+    found = declare(syntax, problems)
+    assert (list(found.requirements), list(found.elsewhere), problems) == (["safe"], ["safe"], [])
+    assert found.place("d").source.name == "base.stl" and found.place("safe").source.name == "s"
