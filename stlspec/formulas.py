@@ -11,12 +11,12 @@ import numpy as np
 
 from stlspec.api import Bundle, publish
 from stlspec.binding import bind
-from stlspec.compiler.checks import check, names_in
+from stlspec.compiler.checks import check
 from stlspec.compiler.compiling import compile_syntax
 from stlspec.compiler.inference import FUNCTIONS, NOW
 from stlspec.demos import Demonstration
 from stlspec.errors import SpecError, UsageError, diagnostic
-from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement
+from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement, names_in
 from stlspec.lang.parse import Syntax, parse, parse_formula
 from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import stlspec
+from stlspec.tools.expectations import load_tests, run_tests
 
 SPECS = Path(__file__).parents[1] / "specs"
 PAIRS = {
@@ -36,3 +37,8 @@ def test_the_sine_touches_its_bound_and_holds() -> None:
     bounded = row.requirements["bounded"].result
     assert (bounded.robustness, bounded.verdict) == (0.0, stlspec.Verdict.SATISFIED)
     assert row.requirements["positive_for_a_period"].result.robustness == -1.0
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_what_the_specs_expect_is_met(name: str) -> None:
+    assert [o.text for o in run_tests(load_tests(SPECS / f"{name}.stl")) if o.result != "met"] == []

@@ -4,27 +4,24 @@ In: the syntax and the values of params. Out: the `Model` and every diagnostic, 
 root cause is reported once: names that broken statements declare are known, and broken expressions stay silent.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 
 from stlspec.compiler.bundle import Param, Signal
 from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
+from stlspec.compiler.expectations import check_expectations
 from stlspec.compiler.inference import MANY_PROBLEMS, Inference
 from stlspec.compiler.model import BROKEN, FORMULA, Binding, Declared, Model, Typing
 from stlspec.compiler.names import declare
 from stlspec.compiler.templates import TemplateInference
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
-    Call,
-    Expression,
-    Index,
     LetStatement,
     Name,
     RequirementStatement,
     SignalStatement,
-    bounds,
-    post_order,
+    names_in,
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
@@ -58,6 +55,7 @@ def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tupl
         inference.formula(requirement.formula)
         _clauses(syntax.source, requirement, problems)
     _graph(syntax, declared, problems)
+    check_expectations(syntax, declared, problems)
     let_typings = {name: inference.scope[name] for name in order}
     model = Model(
         syntax.source,
@@ -211,22 +209,6 @@ def _let_circle(declared: Declared, circle: list[str]) -> Diagnostic:
     labels = tuple(declared.place(name, f"`{name}` uses `{used}`") for name, used in pairwise(circle[1:]))
     first, shown = declared.place(circle[0]), " -> ".join(circle)
     return diagnostic("N104", source=first.source, span=first.span, labels=labels, name=circle[0], cycle=shown)
-
-
-def names_in(root: Expression) -> Iterable[str]:
-    """Yield the names that an expression uses, in its intervals too."""
-    pending = [root]
-    while pending:
-        for node in post_order(pending.pop()):
-            match node:
-                case Name():
-                    yield node.text
-                case Call():
-                    yield node.function.text
-                case Index():
-                    yield node.name.text
-            if not isinstance(node, Index):
-                pending += bounds(node)
 
 
 def _clauses(source: SourceText, requirement: RequirementStatement, problems: list[Diagnostic]) -> None:

@@ -155,4 +155,25 @@ CODES: tuple[Code, ...] = (
         good="signal d\nlet near(x, r) = x < r\nhard safe: not near(d, 1)\n",
         kind="shown",
     ),
+    Code(
+        "N116",
+        "an expectation of no requirement",
+        "error",
+        message="the spec has no requirement `{name}`",
+        help="{help}",
+        explanation="`expect NAME holds on ...` speaks of a requirement of this file, stated with `hard` or `soft`.",
+        bad=_SAFE + "expect save holds on {d: [2]}\n",
+        good=_SAFE + "expect safe holds on {d: [2]}\n",
+    ),
+    Code(
+        "N117",
+        "data that lacks a signal",
+        "error",
+        message="`{name}` cannot be evaluated on this data: it lacks {names}",
+        help="add {parts}",
+        explanation="Data in braces gives every signal that the requirement uses, and `time` where time stamps come "
+        "with the data.",
+        bad="signal d\nsignal e\nhard safe: always (d > e)\nexpect safe holds on {d: [2]}\n",
+        good="signal d\nsignal e\nhard safe: always (d > e)\nexpect safe holds on {d: [2], e: [1]}\n",
+    ),
 )

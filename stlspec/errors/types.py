@@ -55,7 +55,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="{what}",
         help="{help}",
-        explanation="A scale is a positive number, a bound is one of tanh, linear, none, and a type is real or bool.",
+        explanation="A scale is a positive number, a bound is one of tanh, linear, none, a type is real or bool, and a "
+        "label is good, incomplete or bad. Data in braces has one value of the right kind for every sample.",
         bad=_D + "hard safe scale 0: always (d > 1)\n",
         good=_D + "hard safe scale 2: always (d > 1)\n",
     ),

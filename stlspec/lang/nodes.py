@@ -5,7 +5,7 @@ grammar covers both; a later pass tells reals from Booleans. Every operator of t
 is an `Operator` inside a `Prefix` or an `Infix`, so that passes need no case for each of them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from stlspec.source import Span
@@ -313,3 +313,19 @@ def post_order(root: Expression) -> Iterator[Expression]:
             pending.extend((child, False) for child in reversed(below))
         else:
             yield node
+
+
+def names_in(root: Expression) -> Iterable[str]:
+    """Yield the names that an expression uses, in its intervals too."""
+    pending = [root]
+    while pending:
+        for node in post_order(pending.pop()):
+            match node:
+                case Name():
+                    yield node.text
+                case Call():
+                    yield node.function.text
+                case Index():
+                    yield node.name.text
+            if not isinstance(node, Index):
+                pending += bounds(node)
