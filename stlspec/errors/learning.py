@@ -92,27 +92,43 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "D867",
-        "several goals",
+        "too many orders of goals",
         "error",
-        message="the spec has {count} goals, and the learner takes one: {goals}",
-        help="several goals are not supported yet: keep one `eventually` condition in the spec to learn from",
-        explanation="Every distinct condition under an `eventually` is a goal of its own. Visiting several "
-        "(Algorithm 3) is not supported yet.",
-        bad="signal d_1\nsignal d_2\nsoft both: eventually (d_1 < 1) and eventually (d_2 < 1)\n",
-        good="signal d_1\nsoft first: eventually (d_1 < 1)\n",
+        message="the {count} goals of the spec can be visited in {orders} orders, and the learner tries at most "
+        "{most}: {goals}",
+        help="say which comes first, for example: soft order: not b until a",
+        explanation="Every distinct condition under an `eventually` is a goal, and the learner tries the orders in "
+        "which goals can be visited (Algorithm 3): all of them for up to six goals. `not b until a`, "
+        "`eventually (a and eventually b)` and `depends on` leave fewer.",
+        bad="# soft all: eventually a and eventually b and ... eventually g   (seven goals: 5,040 orders)\n",
+        good="# soft all: eventually (a and eventually (b and ... eventually g))   (one order)\n",
         kind="shown",
     ),
     Code(
         "D868",
         "a hard requirement that the learner cannot watch step by step",
         "error",
-        message="hard requirement '{requirement}' is not `always` of a condition on the present sample: {reason}",
-        help="write it as `hard {requirement}: always (...)` without bounds, temporal operators, delta, rate "
-        "and now inside, or make it soft",
-        explanation="The learner watches hard requirements at every step, in a table over states. That works "
-        "for `always` (without bounds) of a condition that looks at the present sample only.",
-        bad="signal d_obs\nhard avoid: always[0, 10] (d_obs >= 1)\n",
-        good="signal d_obs\nhard avoid: always (d_obs >= 1)\n",
+        message="hard requirement '{requirement}' cannot be watched while the policy is learned: {reason}",
+        help="write it as `hard {requirement}: always (...)` over the present and the past, or make it soft",
+        explanation="The learner watches hard requirements at every step. One with memory runs beside the "
+        "environment as a machine with finitely many states, so a past operator may not stand over a future "
+        "one, nor delta or rate over another or beside `now`.",
+        bad="signal x\nhard odd: always (once (eventually (x > 1)))\n",
+        good="signal x\nhard fine: always (once[0, 5] (x > 1))\n",
+        kind="shown",
+    ),
+    Code(
+        "D878",
+        "too many states to learn over",
+        "error",
+        message="the {places} states of the environment, times what the hard requirements remember, are more than "
+        "{most} states",
+        help="shorten the windows in the hard requirements, or make one of them soft",
+        explanation="A hard requirement with memory (a past operator, bounds, `until`, `now`) makes the learner "
+        "tell states apart by what happened before: one for each state of the environment and of the "
+        "requirement's timers that can be reached.",
+        bad="# hard slow: always (once[0, 100000] wet implies not dry)\n",
+        good="# hard quick: always (once[0, 5] wet implies not dry)\n",
         kind="shown",
     ),
     Code(

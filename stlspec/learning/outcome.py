@@ -23,19 +23,27 @@ from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """One entry for each episode: its steps, its return (undiscounted, before shaping), and how it ended."""
+    """One entry for each episode: its steps, its return (undiscounted, before shaping), and how it ended.
+
+    segments: the number of the segment that each episode trained, from 1; () = there is one.
+    """
 
     steps: tuple[int, ...]
     returns: tuple[float, ...]
     endings: tuple[int, ...]
+    segments: tuple[int, ...] = ()
 
     def to_csv(self) -> str:
-        """Return the text of episodes.csv, episodes from 1."""
+        """Return the text of episodes.csv, episodes from 1; where there are several segments, with their numbers."""
         rows = [
             f"{i},{steps},{number(gained)},{ENDINGS[ending]}"
             for i, (steps, gained, ending) in enumerate(zip(self.steps, self.returns, self.endings, strict=True), 1)
         ]
-        return "\n".join(["episode,steps,return,outcome", *rows]) + "\n"
+        head = "episode,steps,return,outcome"
+        if max(self.segments, default=1) > 1:
+            head = f"{head},segment"
+            rows = [f"{row},{segment}" for row, segment in zip(rows, self.segments, strict=True)]
+        return "\n".join([head, *rows]) + "\n"
 
 
 @dataclass(frozen=True, slots=True)

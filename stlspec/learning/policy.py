@@ -1,8 +1,9 @@
 """The policy that comes out of training: one action for every state.
 
 In: a Q table, or the `policy.json` of a finished run. Out: the greedy path, and `Policy`, whose `act` takes
-an observation of the environment as gymnasium gives it. A policy file is data: it is checked before use, and
-carries the names of its states, so that acting needs neither the spec nor the environment.
+an observation of the environment as gymnasium gives it. With several goals, or where hard requirements have
+memory, the action depends on the way there too: then there is a `Route`. A policy file is data: it is checked
+before use, and carries the names of its states, so that acting needs neither the spec nor the environment.
 """
 
 import operator
@@ -15,6 +16,7 @@ from typing import Any
 
 from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.errors import DataError, diagnostic
+from stlspec.learning.route import Route, Walk, read_route
 from stlspec.learning.shaping import RUNS
 
 SCHEMA = "stlspec.policy/1"
@@ -64,6 +66,8 @@ class Policy:
     """A greedy policy: `actions[k]` is the action in `states[k]`, `q[k]` the values it was chosen by.
 
     environment: the description of the environment that it was learned in. A masked action has Q = -inf.
+    route: what to remember within an episode; None = nothing, and a call of `act` changes nothing. With a
+    route, `actions` and `q` are those of its first stage, before anything has happened.
     """
 
     environment: MappingProxyType[str, Any]
@@ -71,28 +75,41 @@ class Policy:
     states: tuple[State, ...]
     actions: tuple[int, ...]
     q: tuple[tuple[float, ...], ...]
+    route: Route | None = None
+    _walk: Walk | None = field(init=False, repr=False, compare=False)
     _rows: dict[State, int] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "_walk", None if self.route is None else Walk(self.route))
         object.__setattr__(self, "_rows", {state: row for row, state in enumerate(self.states)})
+
+    def reset(self) -> None:
+        """Forget what happened: call it when an episode begins. Without a route there is nothing to forget."""
+        if self._walk is not None:
+            self._walk.reset()
 
     def act(self, observation: Any) -> int:
         """Return the action to take.
 
         Not in the paper: the way out of the product, into the user's own loop.
 
+        With a route, call it once for each observation of an episode, the first included: it keeps track of the
+        goals reached and of what hard requirements remember. A state that cannot follow on the last one is
+        taken as it is, without a past.
+
         Args:    observation: the number of a state, or [row, col]; numbers may be numpy's.
         Returns: the number of an action.
         Raises:  DataError D874: the observation is no state of the policy.
         """
         row = self._row(observation)
-        if row is None:
+        action = None if row is None else self.actions[row] if self._walk is None else self._walk.step(row)
+        if action is None:
             example = list(self.states[0]) if isinstance(self.states[0], tuple) else self.states[0]
             shown = repr(observation)[:60]
             raise DataError(
                 [diagnostic("D874", observation=shown, states=len(self.states), example=f"such as {example}")]
             )
-        return self.actions[row]
+        return action
 
     def _row(self, observation: Any) -> int | None:
         if getattr(observation, "ndim", None) == 1:
@@ -108,6 +125,7 @@ class Policy:
 
     def to_json(self) -> dict[str, Any]:
         """Return the document that `load_policy` reads; the row of a state is its number."""
+        route = {} if self.route is None else {"route": self.route.to_json()}
         return {
             "schema": SCHEMA,
             "env": dict(self.environment),
@@ -115,6 +133,7 @@ class Policy:
             "states": [list(s) if isinstance(s, tuple) else s for s in self.states],
             "actions": list(self.actions),
             "q": [[v if isfinite(v) else ("inf" if v > 0 else "-inf") for v in row] for row in self.q],
+            **route,
         }
 
 
@@ -152,6 +171,7 @@ def _policy(document: dict[str, Any]) -> Policy:
         named,
         tuple(_action(x, n_actions) for x in actions),
         tuple(_values(x, n_actions) for x in q),
+        read_route(document["route"], len(named), n_actions) if "route" in document else None,
     )
 
 

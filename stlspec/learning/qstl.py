@@ -12,7 +12,7 @@ from math import fsum, inf
 import numpy as np
 
 from stlspec.learning.settings import Settings
-from stlspec.learning.shaping import GOAL, LIMIT, RUNS, VIOLATION, moves
+from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, VIOLATION, moves
 from stlspec.learning.task import Task
 
 CHUNK = 25
@@ -71,8 +71,8 @@ class Learner:
         self.env_steps += steps
         if ending == VIOLATION:
             self.violations += 1
-            if self.settings.mask:
-                self.forbid([(state, action)])
+        if ending in (VIOLATION, AVOIDED) and self.settings.mask:
+            self.forbid([(state, action)])
 
     def skip(self, count: int) -> None:
         """Log `count` episodes that are over before their first step, since the start ends them."""
@@ -109,7 +109,7 @@ def run_episodes(learner: Learner, count: int, random: np.random.Generator) -> N
     q, table, choices, start = learner.q, learner.moves, learner.choices, learner.task.start
     gamma, alpha, epsilon = learner.settings.gamma, learner.settings.alpha, learner.settings.epsilon
     limit, cost = learner.settings.max_steps, learner.settings.step_cost
-    gain = {GOAL: 1.0, VIOLATION: -1.0}
+    gain = {GOAL: 1.0, VIOLATION: -1.0, AVOIDED: -1.0}
     state, steps, left = start, 0, count
     while left:
         if learner.endings[start] != RUNS:

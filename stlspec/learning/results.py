@@ -16,12 +16,13 @@ from stlspec.errors import Diagnostic, diagnostic
 from stlspec.learning import plots, storage
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.policy import FILE as POLICY
-from stlspec.learning.task import Task
+from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
+from stlspec.learning.task import World
 
 Writer = Callable[[Path], object]
 
 
-def publish(outcome: Outcome, task: Task, environment: Environment, bundle: BundleData, directory: Path) -> Outcome:
+def publish(outcome: Outcome, world: World, environment: Environment, bundle: BundleData, directory: Path) -> Outcome:
     """Write the results of a run into its directory, and name them in the outcome.
 
     Not in the paper: the output of the command.
@@ -33,8 +34,8 @@ def publish(outcome: Outcome, task: Task, environment: Environment, bundle: Bund
     scene = plots.Scene(
         title=_title(bundle, f"reward and learned path ({outcome.method})"),
         values=outcome.reward.table(environment),
-        endings=task.endings,
-        start=task.start,
+        endings=marks(world),
+        start=world.place(world.product.start),
         path=outcome.states,
         n_columns=environment.n_columns,
     )
@@ -53,6 +54,16 @@ def publish(outcome: Outcome, task: Task, environment: Environment, bundle: Bund
     writers |= {name: _bytes(data) for name, data in pictures.values()}
     storage.publish(directory, writers)
     return outcome
+
+
+def marks(world: World) -> tuple[int, ...]:
+    """Return what each state of the environment is drawn as: forbidden, a goal, or neither.
+
+    Not in the paper: pictures.
+    """
+    goals = [any(column) for column in zip(*(visit.holds for visit in world.visits), strict=True)]
+    forbidden = world.product.forbidden
+    return tuple(VIOLATION if bad else GOAL if goal else RUNS for bad, goal in zip(forbidden, goals, strict=True))
 
 
 Pictures = dict[str, tuple[str, bytes]]

@@ -1,8 +1,8 @@
-"""The state of an unfinished run, as JSON and back.
+"""The state of a segment, unfinished or finished, as JSON and back.
 
 In: a `Learner` between two chunks of episodes. Out: what a checkpoint holds, and a learner in the same state
 again, to the bit: JSON keeps every digit of a float. A checkpoint is an input like any other: one that does
-not fit is ignored, and the run starts from the beginning.
+not fit is ignored, and the segment starts from the beginning.
 """
 
 import hashlib
@@ -15,43 +15,52 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import number
 from stlspec.envs.model import Environment
 from stlspec.learning.qstl import CHUNK, Learner
+from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
+from stlspec.learning.task import Task
 
-_FORMAT = 1
+_FORMAT = 2
 
-Check = tuple[int, int, bool]
-"""A look at the greedy path: episodes and steps so far, and whether it meets every requirement."""
+Look = tuple[int, int, tuple[int, ...]]
+"""A look at the greedy path: episodes and steps so far, and the path, learner states."""
 
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """How far a run has come: chunks of episodes done, checks so far, seconds spent."""
+    """How far a segment has come: chunks of episodes done, the look after each, seconds spent."""
 
     chunks: int
-    checks: tuple[Check, ...]
+    looks: tuple[Look, ...]
     seconds: float
 
 
 def fingerprint(
-    bundle: BundleData, environment: Environment, learner: Learner, prefilled: Sequence[tuple[int, int]]
+    bundle: BundleData,
+    environment: Environment,
+    task: Task,
+    settings: Settings,
+    potential: Sequence[float],
+    prefilled: Sequence[tuple[int, int]],
 ) -> str:
-    """Hash everything that the course of a run depends on; equal runs have equal fingerprints.
+    """Hash everything that the course of a segment depends on; equal segments have equal fingerprints.
 
     Not in the paper: a checkpoint of any other run is worthless.
 
     Returns: SHA-256, hexadecimal.
     """
     spec = (bundle.time, bundle.signals, bundle.requirements, bundle.nodes)
-    world = (environment.fingerprint, environment.describe(), learner.task)
-    run = (_FORMAT, CHUNK, learner.settings, learner.reward, tuple(prefilled), spec, world)
+    world = (environment.fingerprint, environment.describe(), task)
+    run = (_FORMAT, CHUNK, settings, tuple(potential), tuple(prefilled), spec, world)
     return hashlib.sha256(repr(run).encode()).hexdigest()
 
 
 def to_state(learner: Learner, position: Position) -> dict[str, Any]:
     """Return what a checkpoint holds."""
+    paths = {path: number for number, path in enumerate(dict.fromkeys(path for _, _, path in position.looks))}
     return {
         "chunks": position.chunks,
-        "checks": [list(check) for check in position.checks],
+        "paths": [list(path) for path in paths],
+        "looks": [[episodes, steps, paths[path]] for episodes, steps, path in position.looks],
         "seconds": position.seconds,
         "q": [[number(value) for value in row] for row in learner.q],
         "steps": learner.steps,
@@ -73,16 +82,18 @@ def restore(learner: Learner, state: Mapping[str, Any]) -> Position | None:
         steps = [_count(x) for x in state["steps"]]
         returns = [_value(x) for x in state["returns"]]
         outcomes = [_count(x) for x in state["outcomes"]]
-        checks = tuple((_count(e), _count(n), bool(ok)) for e, n, ok in state["checks"])
-        position = Position(_count(state["chunks"]), checks, float(state["seconds"]))
+        paths = [tuple(map(_count, path)) for path in state["paths"]]
+        looks = tuple((_count(e), _count(n), paths[_count(k)]) for e, n, k in state["looks"])
+        position = Position(_count(state["chunks"]), looks, float(state["seconds"]))
         violations = _count(state["violations"])
-    except (KeyError, TypeError, ValueError, OverflowError):
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError):
         return None
     task, settings = learner.task, learner.settings
     done = min(position.chunks * CHUNK, settings.episodes)
     shapes_fit = len(q) == task.n_states and all(len(row) == task.n_actions for row in q)
-    logs_fit = len(steps) == len(returns) == len(outcomes) == done and len(checks) == position.chunks
-    if not shapes_fit or not logs_fit or max(outcomes, default=0) >= len(ENDINGS):
+    logs_fit = len(steps) == len(returns) == len(outcomes) == done and len(looks) == position.chunks
+    known = all(0 <= s < task.n_states for path in paths for s in path) and max(outcomes, default=0) < len(ENDINGS)
+    if not shapes_fit or not logs_fit or not known:
         return None
     learner.forbid((s, a) for s, row in enumerate(q) for a, value in enumerate(row) if value == -inf)
     learner.q[:] = q

@@ -7,11 +7,12 @@ up; the functions take any number type, so that a test can prove with fractions 
 
 from collections.abc import Sequence
 
-RUNS, GOAL, VIOLATION, TERMINAL, LIMIT = range(5)
+RUNS, GOAL, VIOLATION, TERMINAL, LIMIT, AVOIDED = range(6)
 """How an episode stands after a step: it runs on, or ended at the goal, at the violation of a hard
-requirement, in a terminal state of the environment, or at the step limit (which no state decides)."""
+requirement, in a terminal state of the environment, at the step limit (which no state decides), or in a state
+that breaks what a soft requirement keeps up."""
 
-ENDINGS = ("runs", "goal", "violation", "terminal", "limit")
+ENDINGS = ("runs", "goal", "violation", "terminal", "limit", "avoided")
 """The names of these, as the log has them."""
 
 Move = tuple[int, float, int]
@@ -24,10 +25,10 @@ def base_reward(ending: int, step_cost: float) -> float:
     Not in the paper: its rewards are all positive along a demonstration, so that going round in circles
     beside the goal pays more than arriving.
 
-    Args:    ending: `RUNS`, `GOAL`, `VIOLATION` or `TERMINAL`. step_cost: what every step costs, >= 0.
+    Args:    ending: any but `LIMIT`; `AVOIDED` counts as a violation. step_cost: what every step costs, >= 0.
     Returns: the reward, no unit.
     """
-    return {GOAL: 1, VIOLATION: -1}.get(ending, 0) - step_cost
+    return {GOAL: 1, VIOLATION: -1, AVOIDED: -1}.get(ending, 0) - step_cost
 
 
 def shaped_reward(base: float, potential: float, next_potential: float, gamma: float) -> float:

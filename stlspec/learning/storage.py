@@ -1,7 +1,7 @@
 """The output directory of a run: written in one step, resumed after an interruption.
 
 In: the texts and pictures of a finished run, or the state of an unfinished one. Out: files. While a run
-lasts everything is in the sibling directory OUT.partial (`checkpoint.json`); the results are written to
+lasts everything is in the sibling directory OUT.partial (`segment-KEY.json`); the results are written to
 OUT.partial/run, and renaming that directory is the only step that changes OUT: nobody ever sees half a run.
 """
 
@@ -104,9 +104,10 @@ def publish(out: Path, writers: Mapping[str, Callable[[Path], object]]) -> None:
 
 
 def discard(out: Path) -> None:
-    """Remove the checkpoint of a run, and its directory if nothing else is in it."""
+    """Remove the checkpoints of a run, and their directory if nothing else is in it."""
     partial = partial_directory(out)
-    (partial / "checkpoint.json").unlink(missing_ok=True)
+    for place in partial.glob("segment-*.json*"):
+        place.unlink(missing_ok=True)
     _remove_if_empty(partial)
 
 
@@ -115,29 +116,33 @@ def _remove_if_empty(partial: Path) -> None:
         partial.rmdir()
 
 
+def _checkpoint(out: Path, fingerprint: str) -> Path:
+    """Return where a segment is kept: each in a file of its own, since several processes may write."""
+    return partial_directory(out) / f"segment-{fingerprint[:16]}.json"
+
+
 def save_checkpoint(out: Path, fingerprint: str, state: Mapping[str, Any]) -> None:
-    """Keep the state of an unfinished run; a crash while writing leaves the checkpoint before it."""
-    partial = partial_directory(out)
-    fresh = partial / "checkpoint.json.new"
+    """Keep the state of a segment; a crash while writing leaves the checkpoint before it."""
+    place = _checkpoint(out, fingerprint)
+    fresh = place.with_name(place.name + ".new")
     document = {"schema": CHECKPOINT_SCHEMA, "fingerprint": fingerprint, **state}
     try:
-        partial.mkdir(parents=True, exist_ok=True)
+        place.parent.mkdir(parents=True, exist_ok=True)
         fresh.write_text(dumps(document), encoding="utf-8")
-        fresh.replace(partial / "checkpoint.json")
+        fresh.replace(place)
     except OSError as error:
         raise _refused(out, f"cannot be written: {error.strerror or error}") from None
 
 
 def has_checkpoint(out: str | Path) -> bool:
     """Tell whether an unfinished run of a directory was kept."""
-    return (partial_directory(Path(os.path.realpath(out))) / "checkpoint.json").exists()
+    return any(partial_directory(Path(os.path.realpath(out))).glob("segment-*.json"))
 
 
 def load_checkpoint(out: Path, fingerprint: str) -> dict[str, Any] | None:
-    """Return the state of an unfinished run with the same settings; None if there is none that is sound."""
-    place = partial_directory(out) / "checkpoint.json"
+    """Return the state of a segment with the same settings; None if there is none that is sound."""
     try:
-        document = read_document(place, CHECKPOINT_SCHEMA, _LARGEST_CHECKPOINT)
+        document = read_document(_checkpoint(out, fingerprint), CHECKPOINT_SCHEMA, _LARGEST_CHECKPOINT)
     except DamageError:
         return None
     return document if document.get("fingerprint") == fingerprint else None

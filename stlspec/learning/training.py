@@ -1,36 +1,32 @@
 """A whole run of the learner: from a spec, an environment and demonstrations to a policy and its files.
 
-In: what the user gives to `learn`. Out: an `Outcome`, and a directory if one is asked for. Training goes in
-chunks of episodes; between two of them the greedy path is judged by a fresh evaluation of the spec, which
-shares no code with the tables that the learner trains on, and the state may be kept for resuming.
+In: what the user gives to `learn`. Out: an `Outcome`, and a directory if one is asked for. Algorithm 3 trains
+segments (`segments`), puts tours together (`tours`), and has them judged here, by a fresh evaluation of the
+spec, which shares no code with the tables that the learner trains on.
 """
 
-import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
+from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import resume, storage
-from stlspec.learning.evidence import Evidence, gather, notes
-from stlspec.learning.farming import describe, find_farming
-from stlspec.learning.outcome import Log, Outcome, Training, meets
-from stlspec.learning.policy import Policy, greedy_action, greedy_path
-from stlspec.learning.qstl import CHUNK, Learner, run_chunk
+from stlspec.learning.conclusion import conclude
+from stlspec.learning.evidence import gather
+from stlspec.learning.outcome import Outcome
 from stlspec.learning.results import publish
+from stlspec.learning.segments import Trainer, trainer
 from stlspec.learning.settings import make_settings
-from stlspec.learning.task import lifted, make_task, signal_sources
+from stlspec.learning.tables import signal_sources
+from stlspec.learning.task import SETTLED, World, make_world, segment
+from stlspec.learning.tours import Judgement, Search, Tour, best_tour, find_tours, judgement
 from stlspec.rewards import RewardMap
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, evaluate
 
-CHECKPOINT_SECONDS = 1.0
-"""How often the state of a run is kept; more rarely where keeping it takes long."""
-
-CHECKPOINT_SHARE = 0.05
-"""The largest share of the time that may go into keeping it."""
+MOST_JOBS = 256
 
 Progress = Callable[[int, int, int], object]
 """Called between chunks with episodes done, episodes in all, and steps so far."""
@@ -51,172 +47,110 @@ def learn(
     epsilon: float = 0.4,
     step_cost: float = 0.01,
     mask: bool = True,
+    jobs: int = 1,
     demo_environment: Environment | None = None,
     out: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
     """Learn a policy that meets the requirements of a spec.
 
-    Paper: Algorithms 1 and 2.
+    Paper: Algorithms 1 to 3.
 
     Args:    bundle: the compiled spec. environment: where to learn. demonstrations: good or bad; reward: a
              map inferred before, instead. method: "shaped", "plain" or "paper". episodes, max_steps: None =
              by the environment. seed: same seed, same result. gamma, alpha, epsilon: of Q-learning.
-             step_cost: per step. mask: never repeat what violated. demo_environment: where demonstrations
+             step_cost: per step. mask: never repeat what violated. jobs: processes, for segments that can be
+             trained at the same time; the result does not depend on it. demo_environment: where demonstrations
              were made that do not say so. out: directory for the results; an interrupted run resumes.
              progress: called between chunks of episodes.
     Returns: the outcome; `success` says whether the greedy path meets every requirement.
-    Raises:  UsageError: D866 to D872, D876; DataError: a demonstration or the reward cannot be used.
+    Raises:  UsageError: D866 to D872, D876, D878; DataError: a demonstration or the reward cannot be used.
     """
     settings = make_settings(
         environment, method=method, episodes=episodes, seed=seed, max_steps=max_steps, gamma=gamma,
         alpha=alpha, epsilon=epsilon, step_cost=step_cost, mask=mask,
     )  # fmt: skip
-    task = make_task(bundle, environment)
-    judge = Judge(bundle, environment)
-    judge((task.start,))
-    evidence = gather(bundle, task, environment, demonstrations, reward, demo_environment)
-    learner = Learner(task, settings, lifted(task, evidence.reward.table(environment)))
-    if settings.mask:
-        learner.forbid(evidence.violating)
-    prefilled = learner.masked
+    world = make_world(bundle, environment, settings.max_steps, memory=settings.method != "paper")
+    judge = Judge(bundle, environment, world)
+    judge.evaluate((world.product.start,))
+    whole = segment(world, world.product.start, SETTLED)
+    evidence = gather(bundle, whole, environment, demonstrations, reward, demo_environment)
     directory = None if out is None else storage.claim(out)
-    key = resume.fingerprint(bundle, environment, learner, evidence.violating)
-    position = train(learner, judge, directory, key, progress)
-    outcome = conclude(learner, judge, environment, evidence, position, prefilled)
-    return outcome if directory is None else publish(outcome, task, environment, bundle, directory)
+    search = Search(
+        world,
+        settings,
+        evidence.reward.table(environment),
+        set(evidence.violating) if settings.mask else set(),
+        partial(resume.fingerprint, bundle, environment),
+        directory,
+    )
+    with trainer(count_processes(jobs), progress and _Counter(search, progress)) as trained:
+        tour = search_tours(search, trained, judge)
+    outcome = conclude(search, tour, judge, judge.evaluate(tour.path), bundle, environment, evidence)
+    return outcome if directory is None else publish(outcome, world, environment, bundle, directory)
+
+
+class _Counter:
+    """Turns the progress of one segment into that of the run, as far as it is known by now."""
+
+    def __init__(self, search: Search, progress: Progress) -> None:
+        self.search = search
+        self.progress = progress
+
+    def __call__(self, number: int, episodes: int, steps: int) -> None:
+        done = list(self.search.segments.values())
+        before = len(done) + number
+        taken = sum(sum(found.steps) for found in done) + steps
+        each = self.search.settings.episodes
+        self.progress(before * each + episodes, max(len(self.search.tasks), before + 1) * each, taken)
+
+
+def count_processes(jobs: int) -> int:
+    """Check the number of processes.
+
+    Raises:  UsageError D871: it is not a whole number from 1 to 256.
+    """
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
+        allowed = f"a whole number from 1 to {MOST_JOBS}"
+        raise UsageError([diagnostic("D871", option="--jobs", value=str(jobs)[:40], allowed=allowed)])
+    return jobs
+
+
+def search_tours(search: Search, trained: Trainer, judge: "Judge") -> Tour:
+    """Find the best tour, trying harder where the first search meets not every requirement.
+
+    Paper: Algorithm 3. Segments first keep up what soft requirements ask for on the way (`always`, `until`);
+    then, since one soft requirement may stand against another, they head straight for their goals.
+    """
+    find_tours(search, trained, watched=True)
+    tour, found = best_tour(search, judge)
+    if search.world.watches and not found.meets_all:
+        find_tours(search, trained, watched=False)
+        tour, found = best_tour(search, judge)
+    return tour
 
 
 class Judge:
-    """Evaluates the spec afresh on a path of states; remembers paths, since evaluation is pure."""
+    """Evaluates the spec afresh on a path of learner states; remembers paths, since evaluation is pure."""
 
-    def __init__(self, bundle: BundleData, environment: Environment) -> None:
+    def __init__(self, bundle: BundleData, environment: Environment, world: World) -> None:
         self.bundle = bundle
         self.environment = environment
+        self.world = world
         needed = {str(n.value) for n in bundle.nodes if n.op in ("signal", "bool")}
         self._sources = signal_sources(bundle, needed, environment)
-        self._known: dict[tuple[int, ...], bool] = {}
+        self._known: dict[tuple[int, ...], Judgement] = {}
 
-    def __call__(self, path: tuple[int, ...]) -> Evaluation[RequirementResult]:
-        """Evaluate all requirements on a path, (n_samples,) state numbers."""
-        columns = self.environment.signals(set(self._sources.values()), path)
+    def evaluate(self, path: tuple[int, ...]) -> Evaluation[RequirementResult]:
+        """Evaluate all requirements on a path, (n_samples,) learner states."""
+        places = [self.world.place(state) for state in path]
+        columns = self.environment.signals(set(self._sources.values()), places)
         signals = {name: columns[source] for name, source in self._sources.items()}
         return evaluate(self.bundle, signals, file="the learned path")
 
-    def approves(self, path: tuple[int, ...]) -> bool:
-        """Tell whether a path meets every requirement."""
+    def __call__(self, path: tuple[int, ...]) -> Judgement:
+        """Judge a path."""
         known = self._known.get(path)
         if known is None:
-            known = self._known[path] = meets(self.bundle, self(path))
+            known = self._known[path] = judgement(self.bundle, self.evaluate(path))
         return known
-
-
-def train(
-    learner: Learner, judge: Judge, directory: Path | None, key: str, progress: Progress | None
-) -> resume.Position:
-    """Train to the end, from the checkpoint of the same run if there is one.
-
-    Paper: Algorithm 2, with a check of the greedy path after every chunk of episodes.
-
-    Args:    learner: changed in place. judge: judges greedy paths. directory: of the results, None = keep
-             nothing. key: fingerprint of the run. progress: see `learn`; what it raises ends training.
-    Returns: all checks, and the seconds spent, those before an interruption included.
-    """
-    task, settings = learner.task, learner.settings
-    state = None if directory is None else storage.load_checkpoint(directory, key)
-    position = None if state is None else resume.restore(learner, state)
-    chunks, checks, spent = (position.chunks, [*position.checks], position.seconds) if position else (0, [], 0.0)
-    began = saved = time.perf_counter()
-    pause = CHECKPOINT_SECONDS
-    while chunks * CHUNK < settings.episodes:
-        run_chunk(learner, chunks)
-        chunks += 1
-        path, _ = greedy_path(learner.q, task.transitions, learner.endings, task.start, settings.max_steps)
-        checks.append((len(learner.steps), learner.env_steps, judge.approves(path)))
-        now = time.perf_counter()
-        if directory is not None and now - saved >= pause and chunks * CHUNK < settings.episodes:
-            position = resume.Position(chunks, tuple(checks), spent + now - began)
-            storage.save_checkpoint(directory, key, resume.to_state(learner, position))
-            saved = time.perf_counter()
-            pause = max(CHECKPOINT_SECONDS, (saved - now) / CHECKPOINT_SHARE)
-        if progress is not None:
-            progress(len(learner.steps), settings.episodes, learner.env_steps)
-    return resume.Position(chunks, tuple(checks), spent + time.perf_counter() - began)
-
-
-def first_lasting_success(checks: Iterable[resume.Check]) -> tuple[int, int] | None:
-    """Find the first check from which on all checks succeed.
-
-    Not in the paper: decision 10, how learning speed is measured.
-
-    Returns: its episodes and steps; None if the last check fails.
-    """
-    found = None
-    for episodes, steps, success in checks:
-        if not success:
-            found = None
-        elif found is None:
-            found = (episodes, steps)
-    return found
-
-
-def conclude(
-    learner: Learner,
-    judge: Judge,
-    environment: Environment,
-    evidence: Evidence,
-    position: resume.Position,
-    prefilled: int,
-) -> Outcome:
-    """Judge the greedy path once more, and put together what the run has to say.
-
-    Paper: Algorithm 2, its last line. Args: as in `learn`. Returns: the outcome, without files.
-    """
-    task, settings = learner.task, learner.settings
-    path, actions = greedy_path(learner.q, task.transitions, learner.endings, task.start, settings.max_steps)
-    evaluation = judge(path)
-    lasting = first_lasting_success(position.checks)
-    training = Training(
-        episodes=len(learner.steps),
-        env_steps=learner.env_steps,
-        env_steps_to_success=lasting[1] if lasting else None,
-        episodes_to_success=lasting[0] if lasting else None,
-        hard_violations=learner.violations,
-        masked=learner.masked,
-        prefilled=prefilled,
-        seconds=position.seconds,
-    )
-    policy = make_policy(learner, environment)
-    remarks, farming = notes(evidence, settings.method, settings.mask), None
-    if settings.method == "paper":
-        farming = find_farming(task, path, learner.reward, settings.gamma)
-        remarks = (*remarks, describe(farming, policy.states))
-    return Outcome(
-        settings=settings,
-        success=meets(judge.bundle, evaluation),
-        states=path,
-        actions=actions,
-        goal_order=(task.goal_name,),
-        evaluation=evaluation,
-        meets_hard=meets(judge.bundle, evaluation, hard_only=True),
-        training=training,
-        policy=policy,
-        reward=evidence.reward,
-        log=Log(tuple(learner.steps), tuple(learner.returns), tuple(learner.outcomes)),
-        checks=position.checks,
-        farming=farming,
-        warnings=() if settings.method == "plain" else evidence.warnings,
-        notes=remarks,
-    )
-
-
-def make_policy(learner: Learner, environment: Environment) -> Policy:
-    """Freeze the greedy action of every state. Paper: Algorithm 2, "policy from start", for all states."""
-    named: list[Any] = [environment.decode(state) for state in range(environment.n_states)]
-    return Policy(
-        MappingProxyType(environment.describe()),
-        environment.n_actions,
-        tuple(tuple(state) if isinstance(state, list) else state for state in named),
-        tuple(greedy_action(row) for row in learner.q),
-        tuple(map(tuple, learner.q)),
-    )

@@ -65,7 +65,10 @@ def test_a_policy_that_breaks_a_hard_requirement_is_exit_1(tmp_path: Path) -> No
     ("spec", "code"),
     [
         ("signal d_obs\nhard a: always (d_obs >= 1)\n", "goal"),
-        ("signal d_goal\nsignal d_obs\nhard a: always[0, 5] (d_obs > 0)\nsoft b: eventually (d_goal < 1)\n", "always"),
+        (
+            "signal d_goal\nhard a: always (once (next (d_goal > 0)))\nsoft b: eventually (d_goal < 1)\n",
+            "past operator",
+        ),
     ],
 )
 def test_a_task_outside_the_limits_is_refused_with_the_limit(

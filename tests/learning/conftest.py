@@ -1,5 +1,6 @@
 """Specs, maps and demonstrations that the tests of learning share; sweep.py imports them too."""
 
+import itertools
 import json
 import random
 from collections import deque
@@ -62,6 +63,72 @@ def item_parts(item):
     return grid_bundle(item["t_goal_bfs"]), grid_world(rows), demos
 
 
+TOUR_SPEC = """
+signal d_obs
+{signals}
+param T_goal
+hard avoid: always (d_obs >= 1)
+soft reach depends on avoid: {reach}
+soft fast depends on avoid, reach: {fast}
+"""
+
+
+def tour_bundle(goals, t_goal):
+    """Compile the grid's spec with one numbered goal after another, all to be visited within T_goal."""
+    names = [f"d_goal_{k}" for k in range(1, goals + 1)]
+    text = TOUR_SPEC.format(
+        signals="\n".join(f"signal {name}" for name in names),
+        reach=" and ".join(f"eventually ({name} < 1)" for name in names),
+        fast=" and ".join(f"eventually[0, T_goal] ({name} < 1)" for name in names),
+    )
+    return api.compile(text, params={"T_goal": t_goal})
+
+
+def tour_rows(size, start, goals, obstacles):
+    rows = [list(row) for row in grid_rows(size, start, [], obstacles)]
+    for number, (row, column) in enumerate(goals, 1):
+        rows[row][column] = str(number)
+    return tuple("".join(row) for row in rows)
+
+
+def tour_parts(item):
+    """Return bundle, environment and demonstrations of an item with several goals."""
+    rows = tour_rows(item["size"], item["start"], item["goals"], item["obstacles"])
+    demos = demonstrations([d["states"] for d in item["demos"]])
+    return tour_bundle(len(item["goals"]), item["t_goal_bfs"]), grid_world(rows), demos
+
+
+def random_tour(size, goals, seed, share=0.15):
+    """Make a map on which all goals can be visited, with two good demonstrations; all by the seed.
+
+    T_goal is the shortest tour: over all orders, each leg breadth first.
+    """
+    draw = random.Random(f"{size}/{goals}/{seed}")
+    cells = [(r, c) for r in range(size) for c in range(size)]
+    while True:
+        start, *wanted = draw.sample(cells, goals + 1)
+        rest = [cell for cell in cells if cell not in (start, *wanted)]
+        blocked = set(draw.sample(rest, max(1, round(share * size * size))))
+        orders = {order: joined(size, (start, *order), blocked) for order in itertools.permutations(wanted)}
+        if None not in orders.values():
+            break
+    best = min(orders.values(), key=len)
+    other = draw.choice(sorted(orders.values()))
+    rows = tour_rows(size, start, wanted, blocked)
+    return tour_bundle(goals, len(best) - 1), grid_world(rows), demonstrations([best, other])
+
+
+def joined(size, stops, blocked):
+    """Go from stop to stop, each time the shortest way; None if there is none."""
+    path = [stops[0]]
+    for before, after in itertools.pairwise(stops):
+        part = shortest_path(size, before, after, blocked)
+        if part is None:
+            return None
+        path += part[1:]
+    return path
+
+
 def shortest_path(size, start, goal, blocked):
     """Search breadth first, on cells; None if there is no path."""
     before, queue = {start: None}, deque([start])
@@ -113,6 +180,8 @@ def kit():
         public_items=public_items,
         item_parts=item_parts,
         random_task=random_task,
+        tour_parts=tour_parts,
+        random_tour=random_tour,
     )
 
 

@@ -8,7 +8,7 @@ from stlspec.demos import make_demonstration
 from stlspec.errors import DataError
 from stlspec.learning.evidence import gather, notes, violating_pairs
 from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
-from stlspec.learning.task import Task, make_task
+from stlspec.learning.task import SETTLED, Task, make_world, segment
 from stlspec.rewards import infer_reward
 
 # 0 -> 1 by both actions, 1 -> 2 (violates) by action 1
@@ -28,7 +28,8 @@ def gathered(small, demonstrations=None, world=None, **given):
     world = world or home
     demos = demos if demonstrations is None else demonstrations
     fields = {"reward": None, "demo_environment": None, **given}
-    return gather(bundle, make_task(bundle, world), world, demos, **fields)
+    found = make_world(bundle, world, 100)
+    return gather(bundle, segment(found, found.product.start, SETTLED), world, demos, **fields)
 
 
 def test_bad_demonstrations_fill_the_mask_on_their_own_map(small):

@@ -36,16 +36,16 @@ def facts(learner):
 
 @pytest.mark.parametrize("stop", [1, 2, 3])
 def test_a_resumed_learner_goes_on_bit_for_bit(stop):
-    state = to_state(run(stop), Position(stop, ((1, 2, True),) * stop, 0.5))
+    state = to_state(run(stop), Position(stop, ((1, 2, (0, 1)),) * stop, 0.5))
     assert facts(run(4, state)) == facts(run(4))
 
 
-GOOD = to_state(run(1), Position(1, ((25, 60, False),), 0.5))
+GOOD = to_state(run(1), Position(1, ((25, 60, (0, 1, 2)),), 0.5))
 
 
 def test_a_sound_state_is_taken_as_it_was():
     learner = Learner(TASK, SETTINGS, REWARD)
-    assert restore(learner, GOOD) == Position(1, ((25, 60, False),), 0.5)
+    assert restore(learner, GOOD) == Position(1, ((25, 60, (0, 1, 2)),), 0.5)
 
 
 @pytest.mark.parametrize(
@@ -59,8 +59,10 @@ def test_a_sound_state_is_taken_as_it_was():
         {"steps": [-1] * 25},
         {"steps": [1.5] * 25},
         {"outcomes": [9] * 25},
-        {"checks": []},
-        {"checks": [[1, 2]]},
+        {"looks": []},
+        {"looks": [[1, 2]]},
+        {"looks": [[25, 60, 1]]},
+        {"paths": [[0, 4]]},
         {"chunks": 2},
         {"seconds": None},
         {"violations": "3"},
@@ -77,7 +79,7 @@ def test_every_setting_changes_the_fingerprint(small):
     bundle, world, _ = small
 
     def key(settings, reward=REWARD, prefilled=()):
-        return fingerprint(bundle, world, Learner(TASK, settings, reward), prefilled)
+        return fingerprint(bundle, world, TASK, settings, reward, prefilled)
 
     changes = [{"seed": 2}, {"episodes": 7}, {"gamma": 0.8}, {"mask": False}, {"method": "plain"}]
     keys = [key(SETTINGS), *(key(replace(SETTINGS, **change)) for change in changes)]

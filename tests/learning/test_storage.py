@@ -12,6 +12,10 @@ RESULT = {"schema": "stlspec.learn/1", "n": 1, "files": {"result": "result.json"
 RUN = {"result.json": lambda place: place.write_text(json.dumps(RESULT))}
 
 
+def checkpoint(tmp_path, name="a"):
+    return tmp_path / "out.partial" / f"segment-{name}.json"
+
+
 def code(caught):
     return caught.value.diagnostics[0].code
 
@@ -121,7 +125,7 @@ def test_a_checkpoint_comes_back_for_the_same_run_only(tmp_path):
 def test_a_damaged_checkpoint_is_ignored(tmp_path, content):
     out = claim(tmp_path / "out")
     save_checkpoint(out, "a", {})
-    (tmp_path / "out.partial" / "checkpoint.json").write_text(content)
+    checkpoint(tmp_path).write_text(content)
     assert load_checkpoint(out, "a") is None
 
 
@@ -143,8 +147,8 @@ def test_endless_files_are_read_up_to_a_limit(tmp_path, monkeypatch):
     monkeypatch.setattr(storage, "_LARGEST_CHECKPOINT", 1000)
     out = claim(tmp_path / "out")
     save_checkpoint(out, "a", {})
-    (tmp_path / "out.partial" / "checkpoint.json").unlink()
-    (tmp_path / "out.partial" / "checkpoint.json").symlink_to("/dev/zero")
+    checkpoint(tmp_path).unlink()
+    checkpoint(tmp_path).symlink_to("/dev/zero")
     assert load_checkpoint(out, "a") is None
     out.mkdir()
     (out / "result.json").symlink_to("/dev/zero")

@@ -1,26 +1,12 @@
 """Goals and hard requirements as tables over states."""
 
-from types import MappingProxyType
-
-import numpy as np
 import pytest
 
 from stlspec import api
 from stlspec.envs.catalogue import make_environment
-from stlspec.envs.model import Environment
 from stlspec.errors import UsageError
-from stlspec.learning.shaping import GOAL, RUNS, TERMINAL, VIOLATION
-from stlspec.learning.task import (
-    Task,
-    find_goals,
-    followed,
-    goal_name,
-    lifted,
-    make_task,
-    momentary,
-    place,
-    step_conditions,
-)
+from stlspec.learning.shaping import AVOIDED, GOAL, RUNS, TERMINAL, VIOLATION
+from stlspec.learning.task import SETTLED, Task, followed, lifted, make_world, open_watches, place, segment
 
 HEAD = "signal d_obs\nsignal d_goal\nsignal row\n"
 WORLD = make_environment("stlspec/GridWorld-v0", None, ("S.#", "..G"))
@@ -30,9 +16,10 @@ def compiled(text):
     return api.compile(HEAD + text)
 
 
-def goals(text):
-    bundle = compiled(text)
-    return [goal_name(bundle, goal) for goal in find_goals(bundle)]
+def make_task(bundle, world):
+    """Return the tables of the way from the start to the first goal."""
+    found = make_world(bundle, world, 100)
+    return segment(found, found.product.start, 0)
 
 
 def code_of(text, world=WORLD):
@@ -42,72 +29,7 @@ def code_of(text, world=WORLD):
     return found.code, found.message + found.help
 
 
-@pytest.mark.parametrize(
-    ("formula", "expected"),
-    [
-        ("eventually (d_goal < 1)", ["d_goal < 1"]),
-        ("eventually[0, 9] (d_goal < 1)", ["d_goal < 1"]),
-        ("eventually (d_goal < 1) and eventually[2, 4] (d_goal < 1)", ["d_goal < 1"]),
-        ("not always (d_goal >= 1)", ["not (d_goal >= 1)"]),
-        ("not eventually (d_obs < 1)", []),
-        ("always (d_obs >= 1)", []),
-        ("eventually always (d_goal < 1)", []),
-        ("eventually (delta(row) > 0)", []),
-        ("eventually (now > 3)", []),
-        ("always eventually (d_goal < 1)", ["d_goal < 1"]),
-        ("d_obs > 2 implies eventually (d_goal < 1)", ["d_goal < 1"]),
-        ("eventually (row < 1) implies d_obs > 2", []),
-    ],
-)
-def test_goals_are_the_state_predicates_that_are_wanted_eventually(formula, expected):
-    assert goals(f"soft a: {formula}") == expected
-
-
-def test_a_goal_goes_by_the_name_of_its_let():
-    assert goals("let home = d_goal < 1\nsoft a: eventually home") == ["home"]
-
-
-def test_momentary_formulas_look_at_the_present_only():
-    bundle = compiled("soft a: d_obs + 1 > 2 and not (row < delta(row))")
-    found = dict(zip((node.op for node in bundle.nodes), momentary(bundle.nodes), strict=True))
-    assert found["gt"]
-    assert not found["delta"]
-    assert not found["lt"]
-    assert not found["and"]
-
-
-@pytest.mark.parametrize(
-    ("formula", "count"),
-    [
-        ("always (d_obs >= 1)", 1),
-        ("always[0, inf] (d_obs >= 1)", 1),
-        ("not eventually (d_obs < 1)", 1),
-        ("always (d_obs >= 1) and always (row >= 0)", 2),
-        ("not (eventually (d_obs < 1) or eventually (row < 0))", 2),
-    ],
-)
-def test_conditions_that_must_always_hold_are_found(formula, count):
-    bundle = compiled(f"hard a: {formula}")
-    assert len(step_conditions(bundle, bundle.requirements[0])) == count
-
-
-@pytest.mark.parametrize(
-    "formula",
-    [
-        "always[0, 5] (d_obs >= 1)",
-        "always[1, inf] (d_obs >= 1)",
-        "always (once[0, 2] (d_obs >= 1))",
-        "always (delta(row) < 1)",
-        "eventually (d_goal < 1)",
-        "d_obs >= 1",
-        "(d_obs >= 1) until (d_goal < 1)",
-        "always (d_obs >= 1) or always (row >= 0)",
-    ],
-)
-def test_a_hard_requirement_with_memory_is_refused_by_name(formula):
-    code, text = code_of(f"hard keep: {formula}\nsoft go depends on keep: eventually (d_goal < 1)")
-    assert code == "D868"
-    assert "keep" in text
+SOFT = "soft g: eventually (d_goal < 1)"
 
 
 def test_tables_say_where_episodes_end_and_how_robust_a_state_is():
@@ -145,62 +67,50 @@ def test_no_goal_is_refused_and_says_what_is_missing():
     assert "eventually" in text
 
 
-def test_several_goals_are_refused_by_name():
-    code, text = code_of("let far = row > 1\nsoft g: eventually (d_goal < 1) and eventually far")
+def test_too_many_orders_are_refused_with_their_number():
+    seven = " and ".join(f"eventually (row + d_goal == {k})" for k in range(1, 8))
+    world = make_environment("stlspec/GridWorld-v0", None, ("S........", "........G"))
+    code, text = code_of(f"soft g: {seven}", world)
     assert code == "D867"
-    assert "not supported yet" in text
-    assert "far" in text
-    assert "d_goal < 1" in text
+    assert "7 goals" in text
+    assert "5,040 orders" in text
+    assert "not b until a" in text
 
 
-def test_a_signal_that_the_environment_does_not_offer_is_refused_with_those_it_does():
-    bundle = api.compile("signal height\nsoft g: eventually (height < 1)")
+def test_the_paper_method_takes_no_memory():
+    bundle = compiled(f"hard a: always[0, 5] (d_obs >= 1)\n{SOFT}")
     with pytest.raises(UsageError) as caught:
-        make_task(bundle, WORLD)
+        make_world(bundle, WORLD, 100, memory=False)
     (found,) = caught.value.diagnostics
-    assert found.code == "D870"
-    assert "height" in found.message
-    assert "d_goal" in found.help
+    assert found.code == "D868"
+    assert "--method paper" in found.message
 
 
-def test_a_signal_is_read_from_the_name_in_its_declaration():
-    bundle = api.compile('signal height from "row"\nsoft g: eventually (height > 0)')
-    assert make_task(bundle, WORLD).endings == (RUNS, RUNS, RUNS, GOAL, GOAL, GOAL)
+def test_a_goal_does_not_count_before_its_window_begins():
+    """By hand: from (0, 0) the goal (1, 2) is 3 steps away, and counts from sample 5 on."""
+    world = make_world(compiled("soft g: eventually[5, 9] (d_goal < 1)"), WORLD, 100)
+    goals = [s for s in range(world.product.n_states) if world.is_goal(s, 0)]
+    assert [(world.place(s), world.product.clock[s]) for s in goals] == [(5, 5)]
 
 
-SOFT = "soft g: eventually (d_goal < 1)"
+def test_what_a_soft_requirement_keeps_up_is_avoided_until_it_is_over():
+    """By hand: `not b until a` with b = (0, 1) and a = (1, 0) on S.# / ..G."""
+    text = "soft g: (row > 0 or d_goal != 2) until (row > 0 and d_goal == 2)\nsoft h: eventually (d_goal < 1)"
+    world = make_world(compiled(text), WORLD, 100)
+    assert [visit.name for visit in world.visits] == ["row > 0 and d_goal == 2", "d_goal < 1"]
+    assert segment(world, 0, 1, (0,)).endings == (RUNS, AVOIDED, RUNS, RUNS, RUNS, GOAL)
+    assert segment(world, 0, 1, ()).endings == (RUNS,) * 5 + (GOAL,)
+    assert open_watches(world, (0,)) == (0,)
+    assert open_watches(world, (0, 3)) == ()
+    assert open_watches(world, (0, 1)) == ()
 
 
-def test_chance_is_refused_with_the_way_out():
-    code, text = code_of(SOFT, make_environment("FrozenLake-v1"))
-    assert code == "D869"
-    assert "--env-arg is_slippery=false" in text
-
-
-@pytest.mark.parametrize(
-    "fields",
-    [
-        {"n_states": 0},
-        {"n_states": 2, "binned": True},
-        {"n_states": 2, "n_actions": 1},
-        {"n_states": 2, "n_actions": 1, "table": np.array([[0], [1]]), "deterministic": True},
-        {"n_states": 100_001, "table": np.zeros((100_001, 1), int), "deterministic": True, "start": 0},
-    ],
-)
-def test_an_environment_without_a_deterministic_table_is_refused(fields):
-    world = Environment("x", MappingProxyType({}), signal_names=("d_goal",), **fields)
-    assert code_of(SOFT, world)[0] == "D869"
-
-
-@pytest.mark.parametrize("source", ["obs[1]", "d_obstacle"])
-def test_a_declared_source_is_never_replaced_by_a_signal_of_the_same_name(source):
-    """Scoring reads obs[1]; learning on the environment's own d_obs would report success for another spec."""
-    spec = f'signal d_obs from "{source}"\nsignal d_goal\nhard avoid: always (d_obs >= 1)\n'
-    with pytest.raises(UsageError) as caught:
-        make_task(api.compile(spec + "soft g depends on avoid: eventually (d_goal < 1)"), WORLD)
-    (found,) = caught.value.diagnostics
-    assert found.code == "D870"
-    assert f"'{source}'" in found.message and "'d_obs'" in found.message
+def test_a_run_may_end_where_nothing_is_waited_for():
+    text = f"hard a: always (row > 0 implies eventually[0, 2] (d_goal < 1))\n{SOFT}"
+    world = make_world(compiled(text), WORLD, 100)
+    task = segment(world, world.product.start, SETTLED)
+    ended = [world.place(s) for s, ending in enumerate(task.endings) if ending == GOAL]
+    assert 0 in ended and 5 in ended and 3 not in ended
 
 
 def test_a_spec_in_stamps_is_refused_with_the_way_out():

@@ -12,8 +12,7 @@ from stlspec import api
 from stlspec.demos import load_demonstrations
 from stlspec.envs.catalogue import make_environment, read_map
 from stlspec.errors import DataError, UsageError
-from stlspec.learning import learn, training
-from stlspec.learning.training import first_lasting_success
+from stlspec.learning import learn, segments
 from stlspec.rewards import infer_reward
 
 
@@ -31,6 +30,26 @@ def test_shaped_learning_meets_every_requirement_on_the_public_maps(kit, number)
         assert outcome.meets_hard
         assert len(outcome.actions) == item["t_goal_bfs"]
         assert outcome.training.hard_violations <= 4 * len(item["obstacles"])
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_two_goals_are_reached_in_the_shortest_time(kit, number):
+    """T_goal is the shortest possible, so the path must be optimal over both orders."""
+    item = kit.public_items("grid-two-goal")[number]
+    for seed in (0, 1):
+        outcome = learn(*kit.tour_parts(item), seed=seed)
+        assert outcome.success
+        assert len(outcome.actions) == item["t_goal_bfs"]
+        assert sorted(outcome.goal_order) == ["d_goal_1 < 1", "d_goal_2 < 1"]
+
+
+@pytest.mark.parametrize(("goals", "size"), [(2, 6), (3, 5), (3, 8)])
+def test_several_goals_on_fresh_random_maps_too(kit, goals, size):
+    """The bound is the shortest tour over all orders."""
+    for number in range(2):
+        bundle, world, demos = kit.random_tour(size, goals, f"test{number}")
+        outcome = learn(bundle, world, demos, seed=number)
+        assert outcome.success, (goals, size, number)
 
 
 @pytest.mark.parametrize("size", [5, 7, 10])
@@ -190,20 +209,6 @@ def test_where_the_paper_s_method_does_not_farm_it_says_so():
     assert outcome.to_json()["farming"] is None
 
 
-@pytest.mark.parametrize(
-    ("checks", "expected"),
-    [
-        ([], None),
-        ([(25, 100, False)], None),
-        ([(25, 100, True), (50, 180, True)], (25, 100)),
-        ([(25, 100, True), (50, 180, False), (75, 250, True)], (75, 250)),
-        ([(25, 100, True), (50, 180, False)], None),
-    ],
-)
-def test_success_counts_from_the_first_check_after_the_last_failure(checks, expected):
-    assert first_lasting_success(checks) == expected
-
-
 def test_steps_to_success_agree_with_the_log_and_the_checks(small):
     bundle, world, demos = small
     outcome = learn(bundle, world, demos, episodes=110)
@@ -235,8 +240,8 @@ def stop_at(episode):
 @pytest.mark.parametrize("method", ["shaped", "plain", "paper"])
 def test_an_interrupted_run_resumes_bit_for_bit(small, tmp_path, monkeypatch, method):
     """Interrupted at two random places, the third attempt equals a run in one go, but for the seconds."""
-    monkeypatch.setattr(training, "CHECKPOINT_SECONDS", 0.0)
-    monkeypatch.setattr(training, "CHECKPOINT_SHARE", math.inf)
+    monkeypatch.setattr(segments, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(segments, "CHECKPOINT_SHARE", math.inf)
     bundle, world, demos = small
     given = {"method": method, "episodes": 400, "seed": 7}
     whole = learn(bundle, world, demos, out=tmp_path / "whole", **given)
@@ -245,7 +250,7 @@ def test_an_interrupted_run_resumes_bit_for_bit(small, tmp_path, monkeypatch, me
         with pytest.raises(StopHereError):
             learn(bundle, world, demos, out=tmp_path / "out", progress=stop_at(stop), **given)
         assert not (tmp_path / "out").exists()
-        assert (tmp_path / "out.partial" / "checkpoint.json").exists()
+        assert list((tmp_path / "out.partial").glob("segment-*.json"))
     calls = []
     resumed = learn(bundle, world, demos, out=tmp_path / "out", progress=lambda *n: calls.append(n), **given)
     assert calls[0][0] > 200
@@ -260,14 +265,14 @@ def test_an_interrupted_run_resumes_bit_for_bit(small, tmp_path, monkeypatch, me
 
 @pytest.mark.parametrize("damage", ["other", "cut"])
 def test_a_checkpoint_of_another_run_or_a_damaged_one_is_ignored(small, tmp_path, monkeypatch, damage):
-    monkeypatch.setattr(training, "CHECKPOINT_SECONDS", 0.0)
-    monkeypatch.setattr(training, "CHECKPOINT_SHARE", math.inf)
+    monkeypatch.setattr(segments, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(segments, "CHECKPOINT_SHARE", math.inf)
     bundle, world, demos = small
     with pytest.raises(StopHereError):
         seed = 1 if damage == "other" else 0
         learn(bundle, world, demos, episodes=200, seed=seed, out=tmp_path / "o", progress=stop_at(100))
     if damage == "cut":
-        place = tmp_path / "o.partial" / "checkpoint.json"
+        (place,) = (tmp_path / "o.partial").glob("segment-*.json")
         place.write_bytes(place.read_bytes()[:-40])
     outcome = learn(bundle, world, demos, episodes=200, out=tmp_path / "o")
     assert without_time(replace(outcome, files={})) == without_time(
@@ -291,13 +296,23 @@ def test_a_spec_in_seconds_is_refused_before_training(kit, small):
     assert caught.value.diagnostics[0].code == "D876"
 
 
-def test_two_goals_are_refused(kit):
-    bundle = api.compile(
-        "signal d_goal_1\nsignal d_goal_2\nsoft both: eventually (d_goal_1 < 1) and eventually (d_goal_2 < 1)"
-    )
-    with pytest.raises(UsageError) as caught:
-        learn(bundle, kit.grid_world(("S.1", "..2")))
-    assert caught.value.diagnostics[0].code == "D867"
+def test_hard_requirements_with_memory_are_kept(kit):
+    """The short way leads from the wet cell into the dry one; for 2 steps after wet, dry is forbidden."""
+    text = "signal in_w: bool\nsignal in_d: bool\nsignal d_goal\n{}soft home: eventually (d_goal < 1)"
+    world = kit.grid_world(("Swd.G", "....."))
+    outcome = learn(api.compile(text.format("hard drip: always (once[0, 2] in_w implies not in_d)\n")), world)
+    assert outcome.success
+    assert len(outcome.actions) == 6
+    assert outcome.training.hard_violations > 0
+    assert outcome.policy.route is not None
+    assert len(learn(api.compile(text.format("")), world).actions) == 4
+
+
+def test_the_number_of_processes_is_checked(small):
+    for jobs in (0, 257, True, "two"):
+        with pytest.raises(UsageError) as caught:
+            learn(*small, jobs=jobs)
+        assert caught.value.diagnostics[0].code == "D871"
 
 
 def test_masking_can_be_turned_off(small):

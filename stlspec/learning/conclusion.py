@@ -1,0 +1,145 @@
+"""What a run has to say when training is over.
+
+In: the segments and the chosen tour. Out: an `Outcome`: the policy, the log, the counts, and remarks.
+"""
+
+from collections.abc import Iterable
+from types import MappingProxyType
+from typing import Any
+
+from stlspec.compiler.bundle import BundleData
+from stlspec.envs.model import Environment
+from stlspec.learning.evidence import Evidence, notes
+from stlspec.learning.farming import Farming, describe, find_farming
+from stlspec.learning.outcome import Log, Outcome, Training, meets
+from stlspec.learning.policy import Policy, greedy_action
+from stlspec.learning.route import Route, Stage
+from stlspec.learning.shaping import GOAL
+from stlspec.learning.tours import Judge, Search, Tour, looks
+from stlspec.semantics.evaluation import Evaluation, RequirementResult
+
+Check = tuple[int, int, bool]
+"""A look at the greedy path: episodes and steps so far, and whether it meets every requirement."""
+
+
+def first_lasting_success(checks: Iterable[Check]) -> tuple[int, int] | None:
+    """Find the first check from which on all checks succeed.
+
+    Not in the paper: decision 10, how learning speed is measured.
+
+    Returns: its episodes and steps; None if the last check fails.
+    """
+    found = None
+    for episodes, steps, success in checks:
+        if not success:
+            found = None
+        elif found is None:
+            found = (episodes, steps)
+    return found
+
+
+def conclude(
+    search: Search,
+    tour: Tour,
+    judge: Judge,
+    evaluation: Evaluation[RequirementResult],
+    bundle: BundleData,
+    environment: Environment,
+    evidence: Evidence,
+) -> Outcome:
+    """Put together what the run has to say.
+
+    Paper: Algorithms 2 and 3, their last lines.
+
+    Args:    search, tour: what was trained, and what was chosen. judge: judges paths. evaluation: of the spec on
+             the path of the tour. evidence: what demonstrations contributed.
+    Returns: the outcome, without files.
+    """
+    world, settings = search.world, search.settings
+    success = meets(bundle, evaluation)
+    checks = tuple(looks(search, tour, judge))
+    policy = make_policy(search, tour, environment)
+    farming = _farming(search, tour) if settings.method == "paper" else None
+    remarks = notes(evidence, settings.method, settings.mask)
+    if settings.method == "paper":
+        remarks = (*remarks, describe(farming, policy.states))
+    return Outcome(
+        settings=settings,
+        success=success,
+        states=tuple(world.place(state) for state in tour.path),
+        actions=tour.actions,
+        goal_order=tuple(world.visits[goal].name for goal in tour.goals),
+        evaluation=evaluation,
+        meets_hard=meets(bundle, evaluation, hard_only=True),
+        training=_training(search, first_lasting_success(checks) if checks else (0, 0) if success else None),
+        policy=policy,
+        reward=evidence.reward,
+        log=_log(search),
+        checks=checks,
+        farming=farming,
+        warnings=() if settings.method == "plain" else evidence.warnings,
+        notes=remarks,
+    )
+
+
+def _training(search: Search, lasting: tuple[int, int] | None) -> Training:
+    segments = list(search.segments.values())
+    return Training(
+        episodes=sum(len(found.steps) for found in segments),
+        env_steps=sum(sum(found.steps) for found in segments),
+        env_steps_to_success=lasting[1] if lasting else None,
+        episodes_to_success=lasting[0] if lasting else None,
+        hard_violations=sum(found.violations for found in segments),
+        masked=len({pair for found in segments for pair in found.masked}),
+        prefilled=segments[0].prefilled if segments else 0,
+        seconds=sum(found.seconds for found in segments),
+    )
+
+
+def _farming(search: Search, tour: Tour) -> Farming | None:
+    """Look at the last segment of a tour: where one farms, the tour goes no further."""
+    keys = [leg.key for leg in tour.legs if leg.key is not None]
+    if not keys:
+        return None
+    task, found = search.tasks[keys[-1]], search.segments[keys[-1]]
+    return find_farming(task, found.path, search.potential, search.settings.gamma)
+
+
+def make_policy(search: Search, tour: Tour, environment: Environment) -> Policy:
+    """Freeze the greedy action of every state, for each leg of a tour.
+
+    Paper: Algorithm 2, "policy from start", for all states; Algorithm 3, the concatenation of policies.
+    """
+    world = search.world
+    named: list[Any] = [environment.decode(state) for state in range(environment.n_states)]
+    stages = []
+    for leg in tour.legs:
+        if leg.key is not None:
+            task, q = search.tasks[leg.key], search.segments[leg.key].q
+            reached = frozenset(s for s, ending in enumerate(task.endings) if ending == GOAL)
+            stages.append(Stage(task.goal_name, reached, tuple(map(greedy_action, q)), q))
+    rows = [(0.0,) * environment.n_actions] * environment.n_states
+    if stages:
+        for state in reversed(range(world.product.n_states)):
+            rows[world.place(state)] = stages[0].q[state]
+    product = world.product
+    places = product.places or tuple(range(environment.n_states))
+    remembers = stages and (len(stages) > 1 or product.places)
+    return Policy(
+        MappingProxyType(environment.describe()),
+        environment.n_actions,
+        tuple(tuple(state) if isinstance(state, list) else state for state in named),
+        tuple(map(greedy_action, rows)),
+        tuple(rows),
+        Route(places, product.start, product.transitions, tuple(stages)) if remembers else None,
+    )
+
+
+def _log(search: Search) -> Log:
+    segments = list(search.segments.values())
+    return Log(
+        tuple(steps for found in segments for steps in found.steps),
+        tuple(gained for found in segments for gained in found.returns),
+        tuple(ending for found in segments for ending in found.outcomes),
+        tuple(number for number, found in enumerate(segments, 1) for _ in found.steps),
+    )

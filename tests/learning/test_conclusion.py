@@ -1,0 +1,60 @@
+"""What a run says when training is over."""
+
+import pytest
+
+from stlspec import api
+from stlspec.learning import learn
+from stlspec.learning.conclusion import first_lasting_success
+
+
+@pytest.mark.parametrize(
+    ("checks", "expected"),
+    [
+        ([], None),
+        ([(25, 100, False)], None),
+        ([(25, 100, True), (50, 180, True)], (25, 100)),
+        ([(25, 100, True), (50, 180, False), (75, 250, True)], (75, 250)),
+        ([(25, 100, True), (50, 180, False)], None),
+    ],
+)
+def test_success_counts_from_the_first_check_after_the_last_failure(checks, expected):
+    assert first_lasting_success(checks) == expected
+
+
+@pytest.fixture(scope="module")
+def tour(kit):
+    bundle = api.compile(
+        "signal d_goal_1\nsignal d_goal_2\nlet a = d_goal_1 < 1\nlet b = d_goal_2 < 1\n"
+        "soft both: eventually a and eventually b"
+    )
+    return learn(bundle, kit.grid_world(("1.S.", "...2")), episodes=200)
+
+
+def test_counts_add_up_over_all_segments(tour):
+    """Two orders take four segments: to each goal from the start, and from each to the other."""
+    assert tour.training.episodes == 4 * 200 == len(tour.log.steps)
+    assert tour.training.env_steps == sum(tour.log.steps)
+    assert sorted(set(tour.log.segments)) == [1, 2, 3, 4]
+    assert tour.log.to_csv().splitlines()[0] == "episode,steps,return,outcome,segment"
+    assert [c[0] for c in tour.checks] == list(range(25, 801, 25))
+
+
+def test_a_tour_succeeds_while_its_last_segment_is_trained_and_ever_after(tour):
+    assert tour.success
+    assert tour.goal_order == ("a", "b")
+    assert 400 < tour.training.episodes_to_success <= 600
+    assert all(success for *_, success in tour.checks if success) and tour.checks[-1][2]
+
+
+def test_the_policy_has_a_stage_for_each_goal(tour):
+    route = tour.policy.route
+    assert [stage.goal for stage in route.stages] == ["a", "b"]
+    assert [sorted(stage.reached) for stage in route.stages] == [[0], [7]]
+    assert tour.policy.actions[2] == 0
+    place = 2
+    walked = [place]
+    tour.policy.reset()
+    for _ in tour.actions:
+        place = route.transitions[place][tour.policy.act(place)]
+        walked.append(place)
+    assert tuple(walked) == tour.states
