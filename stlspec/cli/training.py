@@ -65,9 +65,10 @@ def learn(
     mask: Annotated[
         bool, typer.Option("--mask/--no-mask", help="never repeat a step that broke a hard requirement")
     ] = True,
+    jobs: Annotated[int, typer.Option("--jobs", help="processes, for segments between goals")] = 1,
     output: FormatOption = Format.TEXT,
 ) -> None:
-    """Learn a policy that meets the requirements (Algorithms 1 and 2)."""
+    """Learn a policy that meets the requirements (Algorithms 1 to 3)."""
     from stlspec import api, learning, report, rewards
     from stlspec.demos import load_demonstrations
 
@@ -92,6 +93,7 @@ def learn(
             epsilon=epsilon,
             step_cost=step_cost,
             mask=mask,
+            jobs=jobs,
             demo_environment=demonstration_environment(env, env_arg, map_file, demo_env, demo_map),
             out=out,
             progress=bar,
