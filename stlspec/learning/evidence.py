@@ -12,8 +12,9 @@ from itertools import pairwise
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.demos import Demonstration
+from stlspec.envs.catalogue import environment_of
 from stlspec.envs.model import Environment
-from stlspec.errors import Diagnostic, diagnostic
+from stlspec.errors import Diagnostic, StlspecError, diagnostic
 from stlspec.learning.shaping import VIOLATION
 from stlspec.learning.task import Task, followed
 from stlspec.rewards import RankedStates, RewardMap, ranked_states, reward_of
@@ -26,11 +27,13 @@ Pair = tuple[int, int]
 class Evidence:
     """What training starts from.
 
-    reward: the map R. violating: pairs of state and action that bad demonstrations showed to violate.
-    bad_elsewhere: how many bad demonstrations were made on another transition table.
+    reward: the map R. at_home: whether it was all made on the very map that is learned on. violating: pairs of
+    state and action that bad demonstrations showed to violate. bad: how many there are; bad_elsewhere: how many
+    of them were made on another transition table.
     """
 
     reward: RewardMap
+    at_home: bool
     violating: tuple[Pair, ...]
     bad: int
     bad_elsewhere: int
@@ -57,17 +60,20 @@ def gather(
     """
     ranked = ranked_states(bundle, demonstrations, demo_environment or environment)
     warnings: list[Diagnostic] = []
+    at_home = all(same_table(demonstration, environment) for demonstration in ranked)
     if reward is None:
         reward = reward_of(bundle, ranked, demo_environment or environment)
-    elif reward.meaning_sha256 != meaning_sha256(bundle):
-        warnings.append(diagnostic("D865"))
+    else:
+        at_home = made_in(reward, environment)
+        if reward.meaning_sha256 != meaning_sha256(bundle):
+            warnings.append(diagnostic("D865"))
     if reward.all_zero:
         reason = "" if ranked else ": there are no demonstrations"
         warnings.append(diagnostic("D864", reason=reason))
     bad = [demonstration for demonstration in ranked if demonstration.label == "bad"]
     here = [d for d in bad if same_table(d, environment)]
     pairs = {pair for d in here for pair in violating_pairs(task, d.states)}
-    return Evidence(reward, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings))
+    return Evidence(reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings))
 
 
 def same_table(demonstration: RankedStates, environment: Environment) -> bool:
@@ -77,6 +83,18 @@ def same_table(demonstration: RankedStates, environment: Environment) -> bool:
     """
     known = demonstration.environment.fingerprint
     return known is not None and known == environment.fingerprint
+
+
+def made_in(reward: RewardMap, environment: Environment) -> bool:
+    """Tell whether a reward map says that it was inferred on the very transition table that is learned on.
+
+    Not in the paper: on an unseen map the order of its states may mislead.
+    """
+    try:
+        home = environment_of(reward.environment)
+    except StlspecError:
+        return False  # a map for every state may come from an environment that is not installed here
+    return home.fingerprint is not None and home.fingerprint == environment.fingerprint
 
 
 def violating_pairs(task: Task, states: Sequence[int]) -> set[Pair]:

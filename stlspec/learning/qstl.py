@@ -11,8 +11,9 @@ from math import fsum, inf
 
 import numpy as np
 
+from stlspec.learning.promises import Promises
 from stlspec.learning.settings import Settings
-from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, VIOLATION, moves
+from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, UNTRIED, VIOLATION, Move, moves
 from stlspec.learning.task import Task
 
 CHUNK = 25
@@ -21,14 +22,18 @@ CHUNK = 25
 LARGEST_ROBUSTNESS = 1e100
 
 _BLOCK = 1024
+_GAIN = {GOAL: 1.0, VIOLATION: -1.0, AVOIDED: -1.0}
 
 
 class Learner:
     """What training changes.
 
-    q: (n_states, n_actions). moves: what each action does; choices: the actions still allowed; endings: how
-    an episode stands in each state. steps, returns, outcomes: the log, one entry for each episode; a return
-    is the sum of the rewards before shaping, without discount. violations: steps that violated.
+    q: (n_states, n_actions), values of the base reward: shaped values plus the potential of the state.
+    reward: the potential for the method shaped, R for the method paper, unused by plain. promises: the
+    potential as it is now; None without shaping. moves: what each action does; choices: the actions still
+    allowed; endings: how an episode stands in each state. steps, returns, outcomes: the log, one entry for
+    each episode; a return is the sum of the rewards before shaping, without discount. violations: steps that
+    violated.
     """
 
     def __init__(self, task: Task, settings: Settings, reward: Sequence[float]) -> None:
@@ -38,6 +43,7 @@ class Learner:
         self.endings = list(task.endings)
         self.q = [[0.0] * task.n_actions for _ in range(task.n_states)]
         self.choices = [list(range(task.n_actions)) for _ in range(task.n_states)]
+        self.promises = self._promises()
         self.moves = self._moves()
         self.masked = 0
         self.violations = 0
@@ -46,10 +52,63 @@ class Learner:
         self.returns: list[float] = []
         self.outcomes: list[int] = []
 
-    def _moves(self) -> list[list[tuple[int, float, int]]]:
-        settings = self.settings
-        potentials = self.reward if settings.method == "shaped" else None
-        return moves(self.task.transitions, self.endings, potentials, settings.gamma, settings.step_cost)
+    def _promises(self) -> Promises | None:
+        """Start with the promise of the start; None where there is nothing to promise: then this is plain."""
+        if self.settings.method != "shaped" or not any(value > 0 for value in self.reward):
+            return None
+        found = Promises(self.reward, self.task.start)
+        self.q[self.task.start] = [found.claims[self.task.start]] * self.task.n_actions
+        return found
+
+    def _moves(self) -> list[list[Move]]:
+        table = moves(self.task.transitions, self.endings, self.settings.step_cost)
+        if self.promises is not None:
+            tried = set(self.promises.tried)
+            table = [
+                [move if (state, action) in tried else (*move[:2], UNTRIED) for action, move in enumerate(row)]
+                for state, row in enumerate(table)
+            ]
+        return table
+
+    def discover(self, state: int, action: int) -> int:
+        """Look at what an action does that is taken for the first time; return how the episode stands then.
+
+        A state reached for the first time gets its promise, and promises that this action was the last hope
+        of are corrected. Their values change by the same amount: shaped values, which leave the potential
+        out, stay as they were.
+        """
+        after, reward, _ = self.moves[state][action]
+        ending = self.endings[after]
+        self.moves[state][action] = (after, reward, ending)
+        promises = self.promises
+        assert promises is not None
+        promises.note(state, action, after)
+        if ending == RUNS:
+            self._add(after, promises.reach(after, promises.claims[state]))
+        self._correct([state])
+        return ending
+
+    def recall(self, tried: Sequence[tuple[int, int]], claims: Sequence[float]) -> None:
+        """Go back to what promises a checkpoint holds; values are to be set after this."""
+        if self.promises is None:
+            return
+        for state, action in tried:
+            after = self.moves[state][action][0]
+            self.promises.note(state, action, after)
+            if self.task.endings[after] == RUNS:
+                self.promises.reach(after, 0.0)
+        self.promises.claims[:] = claims
+        self.moves[:] = self._moves()
+
+    def _add(self, state: int, amount: float) -> None:
+        row = self.q[state]
+        for action in self.choices[state]:
+            row[action] += amount
+
+    def _correct(self, states: Iterable[int]) -> None:
+        if self.promises is not None:
+            for state, loss in self.promises.correct(states, self.moves, self.choices, self.settings.gamma):
+                self._add(state, -loss)
 
     def forbid(self, pairs: Iterable[tuple[int, int]]) -> None:
         """Mask pairs of state and action; a state without an action left counts as violating itself."""
@@ -59,9 +118,12 @@ class Learner:
             self.choices[state].remove(action)
             self.q[state][action] = -inf
             self.masked += 1
+            affected = [state]
             if not self.choices[state] and self.endings[state] == RUNS:
                 self.endings[state] = VIOLATION
                 self.moves[:] = self._moves()
+                affected += self.promises.before[state] if self.promises is not None else ()
+            self._correct(affected)
 
     def record(self, state: int, action: int, ending: int, steps: int, total: float) -> None:
         """Write an episode, which ended with `action` in `state`, into the log and the mask."""
@@ -100,7 +162,7 @@ def run_chunk(learner: Learner, index: int) -> None:
 
 
 def run_episodes(learner: Learner, count: int, random: np.random.Generator) -> None:
-    """Train for `count` episodes on the base reward, with the potential worked into the moves.
+    """Train for `count` episodes on the base reward, with the potential in the values (see `promises`).
 
     Paper: Algorithm 2, with the reward of decision 7 instead of the printed one (see `shaping`). The action
     is the best one, the lowest on ties, or with probability epsilon any allowed one. Ends terminate;
@@ -109,7 +171,6 @@ def run_episodes(learner: Learner, count: int, random: np.random.Generator) -> N
     q, table, choices, start = learner.q, learner.moves, learner.choices, learner.task.start
     gamma, alpha, epsilon = learner.settings.gamma, learner.settings.alpha, learner.settings.epsilon
     limit, cost = learner.settings.max_steps, learner.settings.step_cost
-    gain = {GOAL: 1.0, VIOLATION: -1.0, AVOIDED: -1.0}
     state, steps, left = start, 0, count
     while left:
         if learner.endings[start] != RUNS:
@@ -125,19 +186,22 @@ def run_episodes(learner: Learner, count: int, random: np.random.Generator) -> N
                 action = row.index(best)
             after, reward, ending = table[state][action]
             steps += 1
+            old = row[action]  # holds the potential that the state had on arrival, whatever a first try corrects
+            if ending == UNTRIED:
+                ending = learner.discover(state, action)
             if ending:
-                row[action] += alpha * (reward - row[action])
+                row[action] += alpha * (reward - old)
             else:
                 ahead = q[after]
                 value = max(ahead)
-                row[action] += alpha * (reward + gamma * value - row[action])
+                row[action] += alpha * (reward + gamma * value - old)
                 if steps < limit:
                     # the maximum of the next row is known already, unless this very row has just changed
                     best = value if after != state else max(row)
                     state, row = after, ahead
                     continue
                 ending = LIMIT
-            learner.record(state, action, ending, steps, gain.get(ending, 0.0) - cost * steps)
+            learner.record(state, action, ending, steps, _GAIN.get(ending, 0.0) - cost * steps)
             state, steps, left = start, 0, left - 1
             if not left or learner.endings[start] != RUNS:
                 break

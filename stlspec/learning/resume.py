@@ -19,7 +19,7 @@ from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
 from stlspec.learning.task import Task
 
-_FORMAT = 2
+_FORMAT = 3
 
 Look = tuple[int, int, tuple[int, ...]]
 """A look at the greedy path: episodes and steps so far, and the path, learner states."""
@@ -67,6 +67,7 @@ def to_state(learner: Learner, position: Position) -> dict[str, Any]:
         "returns": [number(value) for value in learner.returns],
         "outcomes": learner.outcomes,
         "violations": learner.violations,
+        "promises": None if learner.promises is None else learner.promises.to_state(),
     }
 
 
@@ -86,6 +87,7 @@ def restore(learner: Learner, state: Mapping[str, Any]) -> Position | None:
         looks = tuple((_count(e), _count(n), paths[_count(k)]) for e, n, k in state["looks"])
         position = Position(_count(state["chunks"]), looks, float(state["seconds"]))
         violations = _count(state["violations"])
+        tried, claims = _promises(learner, state["promises"])
     except (KeyError, TypeError, ValueError, OverflowError, IndexError):
         return None
     task, settings = learner.task, learner.settings
@@ -96,10 +98,23 @@ def restore(learner: Learner, state: Mapping[str, Any]) -> Position | None:
     if not shapes_fit or not logs_fit or not known:
         return None
     learner.forbid((s, a) for s, row in enumerate(q) for a, value in enumerate(row) if value == -inf)
+    learner.recall(tried, claims)
     learner.q[:] = q
     learner.steps, learner.returns, learner.outcomes = steps, returns, outcomes
     learner.env_steps, learner.violations = sum(steps), violations
     return position
+
+
+def _promises(learner: Learner, state: Any) -> tuple[list[tuple[int, int]], list[float]]:
+    """Read what a checkpoint says of promises; ValueError or a relative if it does not fit the learner."""
+    if learner.promises is None:
+        return [], []
+    n_states, n_actions = learner.task.n_states, learner.task.n_actions
+    tried = [(_count(s), _count(a)) for s, a in state["tried"]]
+    claims = [float(x) for x in state["claims"]]
+    if len(claims) != n_states or any(s >= n_states or a >= n_actions for s, a in tried):
+        raise ValueError
+    return tried, claims
 
 
 def _value(item: Any) -> float:

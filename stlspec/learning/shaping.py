@@ -1,8 +1,10 @@
 """The reward of one step: the base reward, and the potential that the demonstrations add to it.
 
-In: how a step ends, the potential of the state it leaves and of the one it enters. Out: numbers. Everything
-is worked out once for each pair of state and action before training, so that a step of training only looks
-up; the functions take any number type, so that a test can prove with fractions that shaping is harmless.
+In: how a step ends, the potential of the state it leaves and of the one it enters. Out: numbers. The base
+reward is worked out once for each pair of state and action before training, so that a step of training only
+looks up; the tabular learner keeps its potential in the values that it starts from (see `promises`), other
+learners add it with `shaped_reward`. The functions take any number type, so that a test can prove with
+fractions that shaping is harmless.
 """
 
 from collections.abc import Sequence
@@ -14,6 +16,9 @@ that breaks what a soft requirement keeps up."""
 
 ENDINGS = ("runs", "goal", "violation", "terminal", "limit", "avoided")
 """The names of these, as the log has them."""
+
+UNTRIED = len(ENDINGS)
+"""In a table of moves: the action has not been taken yet, so how the episode stands after it is to be looked up."""
 
 Move = tuple[int, float, int]
 """What taking an action does: the next state, the reward, and how the episode stands there."""
@@ -45,31 +50,13 @@ def shaped_reward(base: float, potential: float, next_potential: float, gamma: f
     return base + gamma * next_potential - potential
 
 
-def moves(
-    transitions: Sequence[Sequence[int]],
-    endings: Sequence[int],
-    potentials: Sequence[float] | None,
-    gamma: float,
-    step_cost: float,
-) -> list[list[Move]]:
+def moves(transitions: Sequence[Sequence[int]], endings: Sequence[int], step_cost: float) -> list[list[Move]]:
     """Work out, for every state and action, where it leads, what it pays, and whether it ends the episode.
 
     Not in the paper: it makes a step of training a look-up.
 
     Args:    transitions: (n_states, n_actions), the next states. endings: (n_states,), how an episode stands
-             in each state. potentials: (n_states,), Phi; None = no shaping (the matched baseline).
-             gamma: the discount. step_cost: what every step costs.
-    Returns: (n_states, n_actions) moves, in lists, which the mask may change.
+             in each state. step_cost: what every step costs.
+    Returns: (n_states, n_actions) moves with the base reward, in lists, which the learner may change.
     """
-    table = []
-    for state, row in enumerate(transitions):
-        out = []
-        for after in row:
-            ending = endings[after]
-            reward = base_reward(ending, step_cost)
-            if potentials is not None:
-                ahead = potentials[after] if ending == RUNS else 0
-                reward = shaped_reward(reward, potentials[state], ahead, gamma)
-            out.append((after, reward, ending))
-        table.append(out)
-    return table
+    return [[(after, base_reward(endings[after], step_cost), endings[after]) for after in row] for row in transitions]

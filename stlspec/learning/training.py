@@ -15,8 +15,9 @@ from stlspec.envs.model import Environment
 from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import resume, storage
 from stlspec.learning.conclusion import conclude
-from stlspec.learning.evidence import gather
+from stlspec.learning.evidence import Evidence, gather
 from stlspec.learning.outcome import Outcome
+from stlspec.learning.promises import AT_HOME, ELSEWHERE, promised
 from stlspec.learning.results import publish
 from stlspec.learning.segments import Trainer, trainer
 from stlspec.learning.settings import make_settings
@@ -79,7 +80,7 @@ def learn(
     search = Search(
         world,
         settings,
-        evidence.reward.table(environment),
+        potential_of(evidence, environment, settings.method),
         set(evidence.violating) if settings.mask else set(),
         partial(resume.fingerprint, bundle, environment),
         directory,
@@ -88,6 +89,17 @@ def learn(
         tour = search_tours(search, trained, judge)
     outcome = conclude(search, tour, judge, judge.evaluate(tour.path), bundle, environment, evidence)
     return outcome if directory is None else publish(outcome, world, environment, bundle, directory)
+
+
+def potential_of(evidence: Evidence, environment: Environment, method: str) -> tuple[float, ...]:
+    """Return what training is to make of the reward map: its potential, or for the method paper R itself.
+
+    Paper: section 3.2. Not in the paper: how far a potential is trusted, see `promised`.
+
+    Returns: (n_states,) of the environment.
+    """
+    reward = evidence.reward.table(environment)
+    return reward if method == "paper" else promised(reward, AT_HOME if evidence.at_home else ELSEWHERE)
 
 
 class _Counter:

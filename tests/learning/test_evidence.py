@@ -48,6 +48,16 @@ def test_on_another_map_they_fill_nothing(small, kit):
     assert evidence.bad_elsewhere == 1
 
 
+def test_a_reward_is_at_home_on_the_very_map_that_it_was_made_on_only(small, kit):
+    other = kit.grid_world(("#...G", ".....", "#....", ".....", "S..#."))
+    here, elsewhere = gathered(small), gathered(small, world=other, demo_environment=small[1])
+    assert (here.at_home, elsewhere.at_home) == (True, False)
+    assert gathered(small, [], reward=here.reward).at_home
+    assert not gathered(small, [], other, reward=here.reward).at_home
+    homeless = replace(here.reward, environment={"id": "unknown/Lake-v9", "args": {}, "map": None})
+    assert not gathered(small, [], reward=homeless).at_home
+
+
 def test_a_given_reward_is_taken_and_other_specs_are_told(small, kit):
     reward = infer_reward(small[0], small[2][:1], small[1])
     assert gathered(small, reward=reward).reward == reward

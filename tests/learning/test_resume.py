@@ -30,7 +30,8 @@ def run(chunks, state=None):
 def facts(learner):
     return (
         learner.q, learner.choices, learner.endings, learner.moves, learner.masked, learner.violations,
-        learner.env_steps, learner.steps, learner.returns, learner.outcomes,
+        learner.env_steps, learner.steps, learner.returns, learner.outcomes, learner.promises.to_state(),
+        learner.promises.before, learner.promises.reached,
     )  # fmt: skip
 
 
@@ -66,6 +67,10 @@ def test_a_sound_state_is_taken_as_it_was():
         {"chunks": 2},
         {"seconds": None},
         {"violations": "3"},
+        {"promises": None},
+        {"promises": {"tried": [[0, 2]], "claims": [0.0] * 4}},
+        {"promises": {"tried": [[4, 0]], "claims": [0.0] * 4}},
+        {"promises": {"tried": [[0, 0]], "claims": [0.0] * 3}},
     ],
 )
 def test_a_state_that_does_not_fit_leaves_the_learner_fresh(change):

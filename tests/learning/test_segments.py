@@ -64,4 +64,4 @@ def test_several_processes_give_the_same_segments_in_the_same_order():
 
 def test_what_goes_wrong_in_a_process_reaches_the_caller():
     with pytest.raises(IndexError), trainer(2) as two:
-        two([JOB, replace(JOB, potential=(), settings=replace(SETTINGS, method="shaped"))])
+        two([JOB, replace(JOB, potential=(0.5,), settings=replace(SETTINGS, method="shaped"))])

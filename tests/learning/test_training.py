@@ -83,6 +83,17 @@ def test_demonstrations_of_one_lake_help_on_another(kit, rows):
     assert outcome.training.prefilled == (1 if rows == home.map else 0)
 
 
+def test_a_lake_that_misleads_costs_little(kit):
+    """A fixed potential needed 1400 steps here, plain learning 350: right of (0, 2) is the way, down was it."""
+    home = kit.frozen_lake(("SFFF", "FHFH", "FFFH", "HFFG"))
+    world = kit.frozen_lake(("SFFF", "HHHF", "FFFF", "FFFG"))
+    demos = kit.demonstrations([[(0, 0), (0, 1), (0, 2), (1, 2), (2, 2), (3, 2), (3, 3)]])
+    for seed in range(3):
+        outcome = learn(kit.grid_bundle(6), world, demos, episodes=500, seed=seed, demo_environment=home)
+        assert outcome.success
+        assert outcome.training.env_steps_to_success < 500
+
+
 @pytest.mark.parametrize("method", ["shaped", "plain", "paper"])
 def test_the_same_seed_gives_the_same_run(small, method):
     bundle, world, demos = small
