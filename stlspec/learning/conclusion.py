@@ -14,8 +14,8 @@ from stlspec.learning.farming import Farming, describe, find_farming
 from stlspec.learning.outcome import Log, Outcome, Training, meets
 from stlspec.learning.policy import Policy, greedy_action
 from stlspec.learning.route import Route, Stage
-from stlspec.learning.shaping import GOAL
-from stlspec.learning.tours import Judge, Search, Tour, looks
+from stlspec.learning.task import SETTLED
+from stlspec.learning.tours import CHAIN, Judge, Search, Tour, looks
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
 
 Check = tuple[int, int, bool]
@@ -115,9 +115,13 @@ def make_policy(search: Search, tour: Tour, environment: Environment) -> Policy:
     stages = []
     for leg in tour.legs:
         if leg.key is not None:
-            task, q = search.tasks[leg.key], search.segments[leg.key].q
-            reached = frozenset(s for s, ending in enumerate(task.endings) if ending == GOAL)
-            stages.append(Stage(task.goal_name, reached, tuple(map(greedy_action, q)), q))
+            q = search.segments[leg.key].q
+            if leg.key[1] == CHAIN:
+                first = tour.legs.index(leg) * world.product.n_states
+                q = q[first : first + world.product.n_states]
+            reached = frozenset(s for s in range(world.product.n_states) if world.is_goal(s, leg.goal))
+            name = "the end" if leg.goal == SETTLED else world.visits[leg.goal].name
+            stages.append(Stage(name, reached, tuple(map(greedy_action, q)), q))
     rows = [(0.0,) * environment.n_actions] * environment.n_states
     if stages:
         for state in reversed(range(world.product.n_states)):

@@ -19,8 +19,12 @@ from stlspec.learning.task import SETTLED, Task, World, lifted, open_watches, se
 from stlspec.scores import bounded_robustness
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
+CHAIN = -2
+"""In a key in place of a goal: a whole order of goals trained as one, see `chains`."""
+
 Key = tuple[int, int, tuple[int, ...]]
-"""A segment: the learner state it starts from, the goal, and the watches to keep up."""
+"""A segment: the learner state it starts from, the goal, and the watches to keep up; or a chain: the state, `CHAIN`,
+and its goals and watches."""
 
 Judge = Callable[[tuple[int, ...]], "Judgement"]
 """Judges a path of learner states."""
@@ -55,7 +59,7 @@ def judgement(bundle: BundleData, evaluation: Evaluation[RequirementResult]) -> 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """One goal of a tour: how it was reached, None = the tour stood on it already; part of a chain: see `chain`."""
+    """One goal of a tour, and the segment that led there; None = the tour stood on it already."""
 
     goal: int
     key: Key | None
@@ -170,10 +174,11 @@ def best_tour(search: Search, judge: Judge) -> tuple[Tour, Judgement]:
     then the order in which they were found.
     """
     judged = [(tour, judge(tour.path)) for tour in search.candidates]
-    return max(judged, key=_merit)
+    return max(judged, key=merit)
 
 
-def _merit(judged: tuple[Tour, Judgement]) -> tuple[bool, bool, float, int, int]:
+def merit(judged: tuple[Tour, Judgement]) -> tuple[bool, bool, float, int, int]:
+    """Return what tours are compared by, larger is better: see `best_tour`."""
     tour, found = judged
     return found.meets_hard, found.meets_all, round(found.wanted, 12), -len(tour.path), len(tour.goals)
 
@@ -209,7 +214,6 @@ def _meets(search: Search, tour: Tour, changed: Key, path: tuple[int, ...], judg
     if not path or (path[-1] != search.segments[changed].path[-1] and not ends):
         return False
     whole: tuple[int, ...] = (search.world.product.start,)
-    for leg in tour.legs:
-        if leg.key is not None:
-            whole += path[1:] if leg.key == changed else search.segments[leg.key].path[1:]
+    for key in dict.fromkeys(leg.key for leg in tour.legs if leg.key is not None):
+        whole += path[1:] if key == changed else search.segments[key].path[1:]
     return judge(whole).meets_all

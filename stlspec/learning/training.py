@@ -14,6 +14,7 @@ from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import resume, storage
+from stlspec.learning.chains import find_chains
 from stlspec.learning.conclusion import conclude
 from stlspec.learning.evidence import Evidence, gather
 from stlspec.learning.outcome import Outcome
@@ -132,12 +133,16 @@ def search_tours(search: Search, trained: Trainer, judge: "Judge") -> Tour:
     """Find the best tour, trying harder where the first search meets not every requirement.
 
     Paper: Algorithm 3. Segments first keep up what soft requirements ask for on the way (`always`, `until`);
-    then, since one soft requirement may stand against another, they head straight for their goals.
+    then, since one soft requirement may stand against another, they head straight for their goals; last, orders
+    of goals that can be reached in several states are trained as wholes.
     """
     find_tours(search, trained, watched=True)
     tour, found = best_tour(search, judge)
     if search.world.watches and not found.meets_all:
         find_tours(search, trained, watched=False)
+        tour, found = best_tour(search, judge)
+    if search.settings.method != "paper" and not found.meets_all:
+        find_chains(search, trained, judge)
         tour, found = best_tour(search, judge)
     return tour
 
