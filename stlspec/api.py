@@ -18,6 +18,8 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.compiling import compile_source
 from stlspec.compiler.graph import to_networkx
 from stlspec.errors import UsageError, diagnostic
+from stlspec.markup.figures import standalone
+from stlspec.markup.graphs import dag_svg
 from stlspec.semantics.algebra import MIN_MAX, Algebra
 from stlspec.semantics.ending import evaluate_ending
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
@@ -123,6 +125,11 @@ class Bundle(BundleData):
     def save(self, path: str | Path) -> None:
         """Write the bundle to a file, whole or not at all. Raises: InputError: it cannot be written."""
         files.write_bytes(path, self.dumps())
+
+    def _repr_svg_(self) -> str | None:
+        """Show the DAG of requirements in a notebook; None if it has none, or too many to be read."""
+        graph = dag_svg(self)
+        return None if graph is None else standalone(graph)
 
     def __repr__(self) -> str:
         """Show what it is, not all that it holds."""

@@ -21,6 +21,8 @@ from stlspec.demos import Demonstration
 from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic
+from stlspec.markup.figures import standalone
+from stlspec.markup.grids import Board, board_svg
 from stlspec.scores import (
     DemonstrationScore,
     Label,
@@ -60,6 +62,26 @@ class RewardMap:
     def warnings(self) -> tuple[Diagnostic, ...]:
         """Return D864 if the map is 0 everywhere."""
         return (diagnostic("D864", reason=""),) if self.all_zero else ()
+
+    def _repr_svg_(self) -> str | None:
+        """Show the reward on the map in a notebook; None where its states are no cells of a map."""
+        board = self.board()
+        return None if board is None else standalone(board_svg(board, "The inferred reward on the map"))
+
+    def board(self, path: Sequence[State] = ()) -> Board | None:
+        """Return the map with the values on it, and a path if one is given; None where states are no cells."""
+        rows = self.environment.get("map")
+        if not isinstance(rows, list | tuple) or not rows or len({len(str(row)) for row in rows}) != 1:
+            return None
+        width = len(str(rows[0]))
+
+        def cell(state: State) -> int:
+            row, column = state if isinstance(state, tuple) else divmod(state, width)
+            return row * width + column
+
+        values = {cell(state): value for state, value in zip(self.states, self.values, strict=True)}
+        inside = not values or 0 <= min(values) <= max(values) < width * len(rows)
+        return Board(tuple(map(str, rows)), values, tuple(map(cell, path))) if inside and width else None
 
     def table(self, environment: Environment) -> tuple[float, ...]:
         """Return R for every state of `environment`, which need not be the one the map was inferred on.

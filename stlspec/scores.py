@@ -19,6 +19,10 @@ from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, diagnostic
 from stlspec.lang.units import STEP
+from stlspec.markup.elements import element, short
+from stlspec.markup.elements import number as shown
+from stlspec.markup.figures import notebook
+from stlspec.markup.tables import ScoreRow, score_table
 from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
@@ -61,6 +65,16 @@ class DemonstrationScore:
     rank: int | None
     requirements: Mapping[str, RequirementScore]
 
+    def _repr_html_(self) -> str:
+        """Show the robustness of each requirement over time in a notebook, of the first twenty."""
+        head = element("p", element("b", short(self.name)), f" {self.label or ''}")
+        return notebook(head, *(x.result.chart(name) for name, x in list(self.requirements.items())[:20]))
+
+    def row(self, href: str | None = None) -> ScoreRow:
+        """Return its row in a table of scores. Args: href: where its name leads."""
+        cells = [(x.result.verdict.value, value_text(x.result)) for x in self.requirements.values()]
+        return ScoreRow(self.rank, self.name, self.label, self.reward, cells, href)
+
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
@@ -73,6 +87,17 @@ class Ranking:
     requirements: tuple[tuple[str, str, float, int], ...]
     demonstrations: tuple[DemonstrationScore, ...]
     at: int | None = None
+
+    def best_first(self) -> list[int]:
+        """Return the indices of the demonstrations, best first; equal ones in the order they were given in."""
+        return sorted(range(len(self.demonstrations)), key=lambda k: -(self.demonstrations[k].rank or 0))
+
+    def _repr_html_(self) -> str:
+        """Show the ranking in a notebook, best first, of the first two hundred."""
+        order = self.best_first()
+        more = f", {len(order) - 200} more left out" if len(order) > 200 else ""
+        rows = [self.demonstrations[k].row() for k in order[:200]]
+        return notebook(score_table(f"Best first; rank 1 is the worst{more}", self.requirements, rows))
 
     def to_json(self) -> dict[str, Any]:
         """Return the `stlspec.score/1` document."""
@@ -257,6 +282,14 @@ def _requirement_score(requirement: Requirement, demonstration: str, result: Req
         value = number(result.robustness)
         raise DataError([diagnostic("D860", file=demonstration, requirement=requirement.name, value=value)])
     return RequirementScore(bounded, result, reason)
+
+
+def value_text(result: RequirementResult) -> str:
+    """Write a robustness for a table: as an enclosure where it is one, and with ∅ where no sample decided."""
+    value = shown(result.robustness)
+    if result.low is not None and result.high is not None and result.low != result.high:
+        value = f"[{shown(result.low)}, {shown(result.high)}]"
+    return value + (" ∅" if result.vacuous else "")
 
 
 def moment(result: RequirementResult) -> str:

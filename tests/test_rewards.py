@@ -13,6 +13,7 @@ from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
 from stlspec.errors import DataError
 from stlspec.rewards import (
+    RewardMap,
     demonstration_values,
     infer_reward,
     learner_reward,
@@ -278,3 +279,16 @@ def test_an_endless_file_is_refused(monkeypatch):
         load_reward("/dev/zero")
     assert code(caught) == "D863"
     assert "larger" in str(caught.value)
+
+
+def test_a_reward_on_a_map_shows_itself_in_a_notebook() -> None:
+    described = {"id": "stlspec/GridWorld-v0", "args": {}, "map": ["S.", ".G"]}
+    reward = RewardMap("0" * 64, described, ((0, 1), (1, 1)), (0.5, 1.0))
+    assert reward.board(path=((0, 0), (0, 1))).path == (0, 1)
+    assert reward.board().values == {1: 0.5, 3: 1.0}
+    assert reward._repr_svg_().count("0.50") >= 1
+
+
+@pytest.mark.parametrize("rows", [None, [], ["S", "S."], [""], ["S"]])
+def test_a_reward_without_a_sensible_map_has_no_picture(rows: list | None) -> None:
+    assert RewardMap("0" * 64, {"id": "x", "args": {}, "map": rows}, ((0, 1),), (0.5,))._repr_svg_() is None

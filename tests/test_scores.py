@@ -19,6 +19,7 @@ from stlspec.scores import (
     number,
     ranks,
     score,
+    value_text,
 )
 from stlspec.semantics.evaluation import Verdict
 
@@ -219,3 +220,20 @@ def test_infinities_are_words():
 
 def test_no_demonstrations_give_an_empty_ranking():
     assert score(GRID, []).demonstrations == ()
+
+
+def test_a_ranking_and_its_rows_show_themselves_in_a_notebook() -> None:
+    ranking = score(GRID, [demo("first <i>", [2, 1], [1, 0]), demo("second", [0, 1], [2, 1])])
+    shown = ranking._repr_html_()
+    assert shown.index("first &lt;i&gt;") < shown.index("second")
+    assert "<i>" not in shown
+    assert [ranking.demonstrations[k].name for k in ranking.best_first()] == ["first <i>", "second"]
+    assert ranking.demonstrations[1]._repr_html_().count("<svg") == 3
+
+
+def test_a_value_in_a_table_says_when_it_is_open_or_vacuous() -> None:
+    (row,) = score(GRID, [demo("open", [2, 1], [1, 1])], end="interval").demonstrations
+    assert value_text(row.requirements["avoid"].result) == "[-∞, 0]"
+    late = api.compile("signal x\nhard late: always[5, 6] (x > 0)\n")
+    (row,) = score(late, [make_demonstration("short", {"x": [1.0]})]).demonstrations
+    assert value_text(row.requirements["late"].result) == "∞ ∅"

@@ -116,13 +116,19 @@ def score(
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="OUT", help="a folder, or a .png or .svg file, for pictures")
     ] = None,
+    page: Annotated[
+        Path | None, typer.Option("--report", metavar="OUT.html", help="a page for a browser, one file, with pictures")
+    ] = None,
     output: Annotated[ScoreFormat, typer.Option("--format", help="how to print")] = ScoreFormat.TEXT,
 ) -> None:
     """Score and rank demonstrations against a spec, and say why they fail."""
     from stlspec import api, report, scores
     from stlspec.demos import load_demonstrations
+    from stlspec.pages.score_page import score_page
 
     _check_explained(explain, output)
+    if page is not None:
+        _check_page(page, [spec, *demonstrations])
     bundle = api.read(spec, read_params(params))
     environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
         env, env_arg, map_file
@@ -133,6 +139,8 @@ def score(
     explanations = _explanations(bundle, ranking) if explain or draw else []
     if draw is not None:
         draw(bundle, ranking, explanations)
+    if page is not None:
+        _write_page(page, score_page(bundle, ranking, loaded, environment))
     if output is ScoreFormat.JSON:
         print_json(_with_explanations(ranking, explanations) if explain else ranking.to_json())
     elif output is ScoreFormat.CSV:
@@ -152,6 +160,21 @@ def _check_explained(explain: bool, output: ScoreFormat) -> None:
     if explain and output is ScoreFormat.CSV:
         what = "a CSV table has no room for explanations"
         raise UsageError([diagnostic("D880", what=what, help="use --format json, or leave out --explain")])
+
+
+def _check_page(page: Path, inputs: "list[str | Path]") -> None:
+    """Refuse, before any work, a report over an input or under a name that a browser would not open."""
+    if page.suffix.lower() not in (".html", ".htm"):
+        what = f"`--report {page.name}` does not name an HTML file"
+        raise UsageError([diagnostic("D880", what=what, help="end its name in .html")])
+    spare_inputs(page, inputs, "--report")
+
+
+def _write_page(page: Path, text: str) -> None:
+    from stlspec.compiler.files import write_bytes
+
+    write_bytes(page, text.encode())
+    print(f"report: {page}", file=sys.stderr)
 
 
 def _explanations(bundle: "Bundle", ranking: "Ranking") -> "list[dict[str, Explanation]]":

@@ -22,14 +22,14 @@ MANY = ("--demos",)
 """Options that take every path up to the next option."""
 
 
-def spare_inputs(out: Path, inputs: Sequence[str | Path]) -> None:
+def spare_inputs(out: Path, inputs: Sequence[str | Path], option: str = "-o") -> None:
     """Refuse to write a result over one of the files that it is made from.
 
     Raises: UsageError: `out` is one of `inputs`, under whatever name.
     """
     for path in inputs:
         if out.exists() and Path(path).exists() and out.samefile(path):
-            what = f"`-o {out}` is one of the inputs, and would be overwritten"
+            what = f"`{option} {out}` is one of the inputs, and would be overwritten"
             raise UsageError([diagnostic("D880", what=what, help="choose another file for the result")])
 
 

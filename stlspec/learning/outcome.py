@@ -5,7 +5,7 @@ as files have them, [row, col] on maps. Training time is the only number that tw
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -17,6 +17,8 @@ from stlspec.learning.policy import Policy
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
 from stlspec.learning.storage import RESULT_SCHEMA
+from stlspec.markup.figures import standalone
+from stlspec.markup.grids import board_svg
 from stlspec.rewards import RewardMap
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
 
@@ -111,6 +113,11 @@ class Outcome:
     def path(self) -> tuple[Any, ...]:
         """The greedy path as files have it: [row, col] on maps, else numbers."""
         return tuple(self.policy.states[s] for s in self.states)
+
+    def _repr_svg_(self) -> str | None:
+        """Show the greedy path and the reward on the map in a notebook; None where states are no cells."""
+        board = replace(self.reward, environment=self.policy.environment).board(self.path)
+        return None if board is None else standalone(board_svg(board, "The reward, and the path that was learned"))
 
     def to_json(self) -> dict[str, Any]:
         """Return the `stlspec.learn/1` document; `files` are relative to the output directory.

@@ -19,6 +19,9 @@ from stlspec.compiler.ir import Node
 from stlspec.compiler.passes import optimised
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, UsageError, diagnostic
+from stlspec.markup.charts import robustness_svg
+from stlspec.markup.elements import Markup
+from stlspec.markup.figures import standalone
 from stlspec.semantics.algebra import MIN_MAX, Algebra, checked
 from stlspec.semantics.folds import evaluate_in, evaluate_in_at, is_lattice, lattice_elements
 from stlspec.semantics.layout import arrange
@@ -123,6 +126,18 @@ class RequirementResult:
     def vacuous(self) -> bool:
         """Whether the value comes from an empty window or from beyond an end of the trace."""
         return bool(np.isinf(self.values[self.origin.at])) and bool(self._decision.vacuous[0])
+
+    def _repr_svg_(self) -> str:
+        """Show the robustness over time in a notebook."""
+        return standalone(self.chart("robustness"))
+
+    def chart(self, name: str) -> Markup:
+        """Draw the robustness over time under a name, as `markup.charts.robustness_svg` does."""
+        trace = self.origin.trace
+        times = np.array([trace.time(k) for k in range(trace.n_samples)])
+        unit = "" if trace.unit == "step" else trace.unit
+        at, verdict = float(times[self.origin.at]), self.verdict.value
+        return robustness_svg(name, times, self.signal, verdict, at, self.robustness, unit, self.vacuous)
 
     @property
     def reason(self) -> str:

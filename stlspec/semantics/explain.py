@@ -114,14 +114,15 @@ class Explanation:
         lines = [
             f"{self.requirement} ({self.strength}) is {self.verdict.value}{at}: robustness {_short(self.robustness)}"
         ]
-        lines += [f"  {label:<11} {text}" for label, text in self._parts() if text]
+        lines += [f"  {label:<11} {text}" for label, text in self.parts() if text]
         return lines
 
     def text(self) -> str:
         """Return the lines as one text."""
         return "\n".join(self.lines())
 
-    def _parts(self) -> list[tuple[str, str]]:
+    def parts(self) -> list[tuple[str, str]]:
+        """Return what `lines` says below its first line: (what is told, text); the text may be empty."""
         last = self.steps[-1]
         decided = f"{self.reason}, at {self._place(last)}"
         if self.decided_by == "vacuous":

@@ -147,3 +147,24 @@ def test_plot_draws_each_demonstration(files: list[str], tmp_path: Path, capsys:
     assert (tmp_path / "one.svg").read_bytes().startswith(b"<?xml")
     assert run(["score", GRID, *files, "--plot", str(tmp_path / "two.png")]) == 2
     assert not (tmp_path / "two.png").exists()
+
+
+def test_report_writes_one_page_and_spares_the_inputs(
+    files: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "out.html"
+    assert run(["score", GRID, *files, "--report", str(page)]) == 0
+    assert f"report: {page}" in capsys.readouterr().err
+    text = page.read_text(encoding="utf-8")
+    assert text.count("<details") == 2
+    assert "d_obs = 0, needs &gt;= 1" in text
+    for wrong in ("out.txt", "out"):
+        assert run(["score", GRID, *files, "--report", str(tmp_path / wrong)]) == 2
+        assert "does not name an HTML file" in capsys.readouterr().err
+        assert not (tmp_path / wrong).exists()
+    odd = tmp_path / "data.html"
+    odd.symlink_to(files[0])
+    assert run(["score", GRID, *files, "--report", str(odd)]) == 2
+    assert Path(files[0]).read_text() == GOOD
+    assert run(["score", GRID, *files, "--report", str(tmp_path / "no" / "such.html")]) == 2
+    assert "S092" in capsys.readouterr().err

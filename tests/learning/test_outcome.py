@@ -64,3 +64,9 @@ def test_meeting_is_a_matter_of_verdicts(small):
     result = evaluate(small[0], {"d_obs": [1.0], "d_goal": [2.0]})
     assert meets(small[0], result, hard_only=True)
     assert not meets(small[0], result)
+
+
+def test_the_path_shows_itself_on_the_map_in_a_notebook(outcome):
+    assert 'class="stl-path"' in outcome._repr_svg_()
+    elsewhere = replace(outcome.policy, environment={"id": "x", "args": {}, "map": None})
+    assert replace(outcome, policy=elsewhere)._repr_svg_() is None

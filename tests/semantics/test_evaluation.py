@@ -335,3 +335,9 @@ def test_the_passes_change_no_result_and_no_witness():
     result = bundle.evaluate({"x": [2, 1.5, 1, 0.5, 0]})["r"]
     assert (result.robustness, result.verdict) == (-0.5, Verdict.VIOLATED)
     assert (result.witness.sample, bundle.nodes[result.witness.predicate].op) == (3, "ge")
+
+
+def test_a_result_shows_its_robustness_over_time_in_a_notebook():
+    result = bundle_of("x >= 1").evaluate({"x": [2, 0]})["r"]
+    assert "robustness: satisfied, robustness 1" in result._repr_svg_()
+    assert "r &lt;1&gt;: satisfied" in result.chart("r <1>")

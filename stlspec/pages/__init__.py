@@ -1,0 +1,1 @@
+"""Whole pages: the report on scores; and the style that every page of stlspec has."""

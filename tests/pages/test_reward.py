@@ -1,0 +1,41 @@
+"""The part on the reward shows R(s), or says why there is none."""
+
+import stlspec
+from stlspec.demos import make_demonstration
+from stlspec.envs.catalogue import make_environment
+from stlspec.pages.reward import reward_section, reward_view
+
+SPEC = """signal d_obs
+signal d_goal
+hard avoid: always (d_obs >= 1)
+soft reach depends on avoid: eventually (d_goal < 1)
+"""
+WORLD = {"id": "stlspec/GridWorld-v0", "args": {}, "map": ["S.G", "..#"]}
+
+
+def view_of(demos, world=None, **more):
+    bundle = stlspec.compile(SPEC)
+    return reward_view(bundle, stlspec.score(bundle, demos, world, **more), demos, world)
+
+
+def test_values_and_paths_are_on_the_map() -> None:
+    view = view_of([make_demonstration("d", states=[[0, 0], [0, 1], [0, 2]], env=WORLD)])
+    assert sorted(view.values) == [0, 1, 2]
+    assert view.values[2] == 1.0
+    assert view.values[0] < view.values[1] < 1.0
+    assert view.paths[0].path == (0, 1, 2)
+    assert "R(s) of 3 states" in reward_section(view)
+
+
+def test_without_states_the_reason_is_told_in_words() -> None:
+    view = view_of([make_demonstration("<d>", {"d_obs": [2, 1], "d_goal": [1, 0]})])
+    assert view.reason.startswith("None could be inferred: ")
+    assert "&lt;d&gt;" in reward_section(view)
+    assert view_of([]).reason
+    assert view_of([make_demonstration("d", {"d_obs": [2, 1], "d_goal": [1, 0]})], at=1).reason
+
+
+def test_states_without_a_map_are_a_table_and_a_reward_of_zero_says_so() -> None:
+    world = make_environment("FrozenLake-v1", {"is_slippery": False})
+    view = view_of([make_demonstration("d", states=[0, 1], env=world.describe())])
+    assert "0 in every state" in reward_section(view)
