@@ -25,6 +25,8 @@ from stlspec.compiler.printing import counted
 from stlspec.envs.model import Environment
 from stlspec.formulas import FormulaResult
 from stlspec.learning import Outcome
+from stlspec.learning.account import sources, taught, way_on_map
+from stlspec.learning.lessons import Source
 from stlspec.rewards import RewardMap
 from stlspec.scores import DemonstrationScore, Ranking, moment
 
@@ -229,13 +231,22 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
         why = f"decided at {moment(result)}: {result.witness.reason}" if result.witness else ""
         table.add_row(mark, requirement.strength, margin, Text(why, "dim"))
     console.print(table)
-    drawing = path_on_map(environment, outcome.states)
+    drawing = way_on_map(environment, outcome.states)
     if drawing:
-        console.print(Text("\nIts path:\n" + drawing))
-    console.print(Text("\n" + "\n".join(_training_lines(outcome))))
+        goals = f" to {' then '.join(outcome.goal_order)}" if outcome.goal_order else ""
+        console.print(Text(f"\nIts path{goals}, {counted(len(outcome.actions), 'step')}:"))
+        console.print(Text("\n".join(drawing)))
+    for block in (taught(outcome), _training_lines(outcome)):
+        if block:
+            console.print(Text("\n" + "\n".join(block)))
     for note in outcome.notes:
         console.print(Text(note))
     console.print(Text(f"\nFiles in {out}{os.sep}: {', '.join(sorted(outcome.files.values()))}"))
+
+
+def print_source(source: Source, stream: TextIO) -> None:
+    """Print where the reward of a state comes from."""
+    console_for(stream).print(Text("\n".join(sources(source))))
 
 
 def _training_lines(outcome: Outcome) -> list[str]:
@@ -251,16 +262,3 @@ def _training_lines(outcome: Outcome) -> list[str]:
             f"({training.env_steps_to_success:,} steps)"
         )
     return lines
-
-
-def path_on_map(environment: Environment, states: Sequence[int]) -> str:
-    """Draw a path on the rows of a map: o where it goes, letters of the map elsewhere; "" without a map."""
-    if environment.map is None or environment.n_columns is None:
-        return ""
-    rows = [list(row) for row in environment.map]
-    free = {".", "F"}
-    for state in states:
-        row, column = divmod(state, environment.n_columns)
-        if rows[row][column] in free:
-            rows[row][column] = "o"
-    return "\n".join("  " + " ".join(row) for row in rows)

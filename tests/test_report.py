@@ -7,6 +7,7 @@ import pytest
 
 import stlspec
 from stlspec import report
+from stlspec.learning.lessons import Source
 
 SPECS = Path(__file__).parents[1] / "specs"
 
@@ -43,9 +44,10 @@ def test_a_vacuous_requirement_is_marked_and_explained(tmp_path: Path) -> None:
     assert "counts 0" in stream.getvalue()
 
 
-def test_the_path_is_drawn_over_free_cells_only() -> None:
-    world = stlspec.make_environment("stlspec/GridWorld-v0", map_rows=["S.G", ".#."])
-    assert report.path_on_map(world, [0, 1, 2]) == "  S o G\n  . # ."
+def test_the_source_of_a_reward_is_printed_as_it_is() -> None:
+    stream = io.StringIO()
+    report.print_source(Source((0, 1), 0.5, (), 1.0, (), False), stream)
+    assert stream.getvalue() == "state [0, 1]: reward 0.5\nno demonstration gives it a value\n"
 
 
 def test_progress_is_silent_where_there_is_no_terminal() -> None:

@@ -13,6 +13,7 @@ PAIRS = {
     "frozenlake_8x8": ("frozenlake_8x8.jsonl", ["good", "incomplete", "incomplete", "bad"]),
     "grid_single_goal": ("grid_5x5.jsonl", ["good", "incomplete", "bad", "incomplete"]),
     "grid_two_goals": ("grid_5x5_two_goals.jsonl", ["good", "good", "bad"]),
+    "grid_wet_dry": ("grid_wet_dry.jsonl", ["good", "incomplete", "bad"]),
     "mountain_car": ("mountain_car.jsonl", ["good", "incomplete", "incomplete"]),
     "example_1": ("example_1.json", ["bad", "good"]),
     "example_2": ("example_2.csv", ["incomplete"]),

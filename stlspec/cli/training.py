@@ -3,6 +3,7 @@
 In: options. Out: the output directory, and a short account on stdout; a progress bar on stderr.
 """
 
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,8 +17,8 @@ from stlspec.cli.data import (
     DemoEnv,
     DemoMap,
     EnvArgs,
+    EnvOption,
     MapOption,
-    Spec,
     demonstration_environment,
     environment_from,
 )
@@ -38,9 +39,9 @@ class Method(StrEnum):
 
 
 def learn(
-    spec: Spec,
-    env: Annotated[str, typer.Option("--env", metavar="ID", help="the environment, by gymnasium id")],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="where policy, log and pictures go")],
+    spec: Annotated[Path | None, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")] = None,
+    env: EnvOption = None,
     demos: Annotated[
         list[str] | None,
         typer.Option("--demos", metavar="DEMO...", help="demonstrations; takes every path up to the next option"),
@@ -66,16 +67,20 @@ def learn(
         bool, typer.Option("--mask/--no-mask", help="never repeat a step that broke a hard requirement")
     ] = True,
     jobs: Annotated[int, typer.Option("--jobs", help="processes, for segments between goals")] = 1,
+    explain: Annotated[
+        str | None,
+        typer.Option("--explain", metavar="STATE", help="where the reward of a state comes from; needs --out alone"),
+    ] = None,
     output: FormatOption = Format.TEXT,
 ) -> None:
-    """Learn a policy that meets the requirements (Algorithms 1 to 3)."""
+    """Learn a policy that meets the requirements (Algorithms 1 to 3), or explain a finished run."""
     from stlspec import api, learning, report, rewards
     from stlspec.demos import load_demonstrations
 
-    if (reward is None) == (not demos):
-        what = "`learn` takes demonstrations or a reward map" + (", not both" if demos else "")
-        raise UsageError([diagnostic("D880", what=what, help="give --demos DEMO... or --reward R.json")])
-    bundle = api.read(spec, read_params(params))
+    if explain is not None:
+        _explain(explain, out, output)
+        return
+    bundle = api.read(_complete(spec, env, demos, reward), read_params(params))
     environment = environment_from(env, env_arg, map_file)
     assert environment is not None
     with _progress(out) as bar:
@@ -105,6 +110,45 @@ def learn(
         report.print_outcome(outcome, bundle, environment, out, sys.stdout)
     if not outcome.meets_hard:
         raise typer.Exit(1)
+
+
+def _complete(spec: Path | None, env: str | None, demos: list[str] | None, reward: Path | None) -> Path:
+    """Return the spec, if all is there that learning takes; explaining takes less, so typer cannot ask for it."""
+    if spec is None:
+        way_out = "`--demos` takes every path up to the next option: put SPEC before it"
+        raise UsageError([diagnostic("D880", what="missing argument 'SPEC'", help=way_out)])
+    if env is None:
+        raise UsageError([diagnostic("D880", what="missing option '--env'", help="see `stlspec learn --help`")])
+    if (reward is None) == (not demos):
+        what = "`learn` takes demonstrations or a reward map" + (", not both" if demos else "")
+        raise UsageError([diagnostic("D880", what=what, help="give --demos DEMO... or --reward R.json")])
+    return spec
+
+
+def _explain(text: str, out: Path, output: Format) -> None:
+    from stlspec import report
+    from stlspec.learning import lessons
+
+    found = lessons.explain(out, parse_state(text))
+    if output is Format.JSON:
+        print_json(found.to_json())
+    else:
+        report.print_source(found, sys.stdout)
+
+
+def parse_state(text: str) -> int | tuple[int, int]:
+    """Read a state as the user writes it: a number, or row and column as in 2,3 or [2, 3].
+
+    Not in the paper: the command line.
+
+    Raises: UsageError D871: it is neither.
+    """
+    found = re.fullmatch(r"\s*[\[(]?\s*(\d{1,9})\s*(?:,\s*(\d{1,9})\s*)?[\])]?\s*", text, re.ASCII)
+    if found is None:
+        allowed = "a number, or row and column as in 2,3"
+        raise UsageError([diagnostic("D871", option="--explain", value=text[:40], allowed=allowed)])
+    first, second = found.groups()
+    return int(first) if second is None else (int(first), int(second))
 
 
 @contextmanager

@@ -29,7 +29,7 @@ class Evidence:
 
     reward: the map R. at_home: whether it was all made on the very map that is learned on. violating: pairs of
     state and action that bad demonstrations showed to violate. bad: how many there are; bad_elsewhere: how many
-    of them were made on another transition table.
+    of them were made on another transition table. ranked: all demonstrations, as Algorithm 1 sees them.
     """
 
     reward: RewardMap
@@ -38,6 +38,7 @@ class Evidence:
     bad: int
     bad_elsewhere: int
     warnings: tuple[Diagnostic, ...]
+    ranked: tuple[RankedStates, ...] = ()
 
 
 def gather(
@@ -73,7 +74,7 @@ def gather(
     bad = [demonstration for demonstration in ranked if demonstration.label == "bad"]
     here = [d for d in bad if same_table(d, environment)]
     pairs = {pair for d in here for pair in violating_pairs(task, d.states)}
-    return Evidence(reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings))
+    return Evidence(reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings), ranked)
 
 
 def same_table(demonstration: RankedStates, environment: Environment) -> bool:

@@ -13,6 +13,7 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import number
 from stlspec.errors import Diagnostic
 from stlspec.learning.farming import Farming
+from stlspec.learning.lessons import NO_LESSONS, Lessons
 from stlspec.learning.policy import Policy
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
@@ -78,8 +79,8 @@ class Outcome:
     evaluation: all requirements on that path. policy: the greedy policy with its Q table. reward: the map R
     that shaped (or, for the method paper, was) the reward. checks: (episode, env_steps, success) of each
     greedy check. farming: for the method paper, the cycle in which the policy collects reward without
-    arriving; None if it does not. warnings, notes: what the user should know. files: names of the files in
-    the output directory.
+    arriving; None if it does not. lessons: what each demonstration taught.
+    warnings, notes: what the user should know. files: names of the files in the output directory.
     """
 
     settings: Settings
@@ -95,6 +96,7 @@ class Outcome:
     log: Log
     checks: tuple[tuple[int, int, bool], ...]
     farming: Farming | None = None
+    lessons: Lessons = NO_LESSONS
     warnings: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

@@ -14,6 +14,7 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.envs.model import Environment
 from stlspec.errors import Diagnostic, diagnostic
 from stlspec.learning import plots, storage
+from stlspec.learning.lessons import FILE as LESSONS
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.policy import FILE as POLICY
 from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
@@ -40,6 +41,7 @@ def publish(outcome: Outcome, world: World, environment: Environment, bundle: Bu
         n_columns=environment.n_columns,
     )
     named = {"result": storage.RESULT, "policy": POLICY, "reward": "reward.json", "log": "episodes.csv"}
+    named["lessons"] = LESSONS
     pictures, warnings = _pictures(outcome, scene, bundle) if plots.available() else ({}, ())
     if "reward_map" not in pictures:
         pictures["reward_map"] = ("reward.txt", plots.reward_text(scene).encode())
@@ -50,6 +52,7 @@ def publish(outcome: Outcome, world: World, environment: Environment, bundle: Bu
         named["policy"]: _text(storage.dumps(outcome.policy.to_json())),
         named["reward"]: _text(storage.dumps(outcome.reward.to_json())),
         named["log"]: _text(outcome.log.to_csv()),
+        named["lessons"]: _text(storage.dumps(outcome.lessons.to_json())),
     }
     writers |= {name: _bytes(data) for name, data in pictures.values()}
     storage.publish(directory, writers)

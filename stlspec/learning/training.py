@@ -5,7 +5,8 @@ segments (`segments`), puts tours together (`tours`), and has them judged here, 
 spec, which shares no code with the tables that the learner trains on.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from stlspec.learning import resume, storage
 from stlspec.learning.chains import find_chains
 from stlspec.learning.conclusion import conclude
 from stlspec.learning.evidence import Evidence, gather
+from stlspec.learning.lessons import lessons_of
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.promises import AT_HOME, ELSEWHERE, promised
 from stlspec.learning.results import publish
@@ -26,7 +28,7 @@ from stlspec.learning.tables import signal_sources
 from stlspec.learning.task import SETTLED, World, make_world, segment
 from stlspec.learning.tours import Judgement, Search, Tour, best_tour, find_tours, judgement
 from stlspec.rewards import RewardMap
-from stlspec.semantics.evaluation import Evaluation, RequirementResult, evaluate
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict, evaluate
 
 MOST_JOBS = 256
 
@@ -89,6 +91,8 @@ def learn(
     with trainer(count_processes(jobs), progress and _Counter(search, progress)) as trained:
         tour = search_tours(search, trained, judge)
     outcome = conclude(search, tour, judge, judge.evaluate(tour.path), bundle, environment, evidence)
+    lessons = lessons_of(evidence, whole, environment, judge.broken, given=reward is not None)
+    outcome = replace(outcome, lessons=lessons)
     return outcome if directory is None else publish(outcome, world, environment, bundle, directory)
 
 
@@ -160,7 +164,15 @@ class Judge:
 
     def evaluate(self, path: tuple[int, ...]) -> Evaluation[RequirementResult]:
         """Evaluate all requirements on a path, (n_samples,) learner states."""
-        places = [self.world.place(state) for state in path]
+        return self._evaluate([self.world.place(state) for state in path])
+
+    def broken(self, places: Sequence[int]) -> tuple[str, ...]:
+        """Name the hard requirements that a path violates, (n_samples,) states of the environment."""
+        evaluation = self._evaluate(places)
+        hard = [r.name for r in self.bundle.requirements if r.strength == "hard"]
+        return tuple(name for name in hard if evaluation[name].verdict is Verdict.VIOLATED)
+
+    def _evaluate(self, places: Sequence[int]) -> Evaluation[RequirementResult]:
         columns = self.environment.signals(set(self._sources.values()), places)
         signals = {name: columns[source] for name, source in self._sources.items()}
         return evaluate(self.bundle, signals, file="the learned path")

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from stlspec.cli.main import run
+from stlspec.cli.training import parse_state
 
 SPECS = Path(__file__).parents[2] / "specs"
 SPEC = str(SPECS / "grid_single_goal.stl")
@@ -20,7 +21,7 @@ def test_learn_writes_a_policy_and_says_what_it_meets(tmp_path: Path, capsys: py
     text = capsys.readouterr().out
     assert "meets every requirement" in text
     assert "✓ avoid" in text
-    drawing = text.split("Its path:\n")[1].split("\n\n")[0]
+    drawing = text.split("Its path to at_goal, 8 steps:\n")[1].split("\n\n")[0]
     assert drawing.count("o") == 7  # eight steps from S to G, whichever of the shortest ways
     result = json.loads((out / "result.json").read_text())
     assert (result["schema"], result["success"], result["method"]) == ("stlspec.learn/1", True, "shaped")
@@ -89,3 +90,32 @@ def test_a_folder_with_other_files_is_never_replaced(tmp_path: Path, capsys: pyt
     assert run(["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(tmp_path)]) == 2
     assert "error[" in capsys.readouterr().err
     assert precious.read_text() == "years of work"
+
+
+def test_a_finished_run_explains_a_state_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = str(tmp_path / "run")
+    assert run(["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", out]) == 0
+    capsys.readouterr()
+    assert run(["learn", "--explain", "[0, 4]", "--out", out]) == 0
+    assert capsys.readouterr().out.startswith("state [0, 4]: reward 1\n= (")
+    assert run(["learn", "--explain", "0,4", "--out", out, "--format", "json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["schema"], document["state"], document["reward"]) == ("stlspec.source/1", [0, 4], 1.0)
+    for text in ("9,9", "99", "here", "", "1,2,3", "-1"):
+        assert run(["learn", f"--explain={text}", "--out", out]) == 2
+    assert run(["learn", "--explain", "0,4", "--out", str(tmp_path / "none")]) == 2
+
+
+@pytest.mark.parametrize("words", [[], [SPEC], [SPEC, *WORLD]])
+def test_what_is_missing_is_named(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["learn", *words, "--out", str(tmp_path / "o")]) == 2
+    text = capsys.readouterr().err
+    assert "D880" in text
+    assert ("SPEC" if not words else "--env" if len(words) == 1 else "--demos") in text
+
+
+@pytest.mark.parametrize(
+    ("text", "state"), [("7", 7), ("2,3", (2, 3)), ("[2, 3]", (2, 3)), (" (2,3) ", (2, 3)), ("0", 0)]
+)
+def test_a_state_is_read_as_it_is_written(text: str, state: object) -> None:
+    assert parse_state(text) == state
