@@ -40,6 +40,8 @@ _SHOWN = {
     "UNIT": "a unit",
     "$END": "the end of the statement",
 }
+_FOREIGN = frozenset({"input", "output", "const", "float", "specification"})
+"""Words with which statements of RTAMT begin."""
 _WORDS = "depends on,on,scale,bound,unit,in,from,holds,fails,episode,at,margin,is,outranks".split(",")
 """Words of clauses, as they are named where they fit."""
 _SIGNS = {
@@ -143,8 +145,17 @@ def _no_statement(failure: Failure) -> Diagnostic | None:
     if failure.token.type in ("RPAR", "RSQB"):
         return failure.error("S019", bracket=word)
     close = closest(word, STATEMENT_WORDS) if is_word(failure.token) else None
+    if word in _FOREIGN or (is_word(failure.token) and _assigns(failure)):
+        way = f"write `let {word} = ...`" if word not in _FOREIGN and close is None else "declare it with `signal`"
+        way += "; a whole spec of RTAMT is translated by `stlspec import FILE`"
+        return failure.error("S003", word=_quoted(word), help=way)
     way = f"did you mean `{close}`?" if close else f"begin with one of: {', '.join(STATEMENT_WORDS)}"
     return failure.error("S003", word=_quoted(word), help=way)
+
+
+def _assigns(failure: Failure) -> bool:
+    after = failure.tokens[failure.at + 1 : failure.at + 2]
+    return bool(after) and after[0].type == "ASSIGN"
 
 
 def _glued_statement(failure: Failure) -> Diagnostic | None:
@@ -311,6 +322,17 @@ def _no_comma(failure: Failure) -> Diagnostic | None:
     return failure.error("S021", low=low[:-1] if dotted else low, high=high[1:] if dotted else high)
 
 
+def _listed_names(failure: Failure) -> Diagnostic | None:
+    """`signal x, y`, as in a spec of Breach."""
+    token, tokens = failure.token, failure.tokens
+    if token is None or token.type != "COMMA" or failure.brackets or tokens[0].type not in ("SIGNAL", "PARAM"):
+        return None
+    word = str(tokens[0])
+    following = tokens[failure.at + 1] if failure.at + 1 < len(tokens) else None
+    name = str(following) if following is not None and is_word(following) else "..."
+    return failure.error("S044", word=word, name=name)
+
+
 def _cut_off(failure: Failure) -> Diagnostic | None:
     """A statement that ends where something must follow."""
     if failure.token is not None:
@@ -335,6 +357,7 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _open_interval,
     _stray_interval,
     _open_bracket,
+    _listed_names,
     _cut_off,
 )
 

@@ -112,6 +112,21 @@ def test_long_or_unprintable_text_is_shortened_in_messages():
         ("expect a holds on {x: 1}", "S001", "expected `[`"),
         ("expect", "S002", "expected a name or a quoted text"),
         ("use common.stl", "S001", "expected a quoted text"),
+        (
+            "signal p, q",
+            "S044",
+            "write `signal q` on a line of its own; a whole spec of Breach is translated by `stlspec import FILE`",
+        ),
+        (
+            "param p = 1, q = 2",
+            "S044",
+            "write `param q` on a line of its own; a whole spec of Breach is translated by `stlspec import FILE`",
+        ),
+        (
+            "input float y",
+            "S003",
+            "declare it with `signal`; a whole spec of RTAMT is translated by `stlspec import FILE`",
+        ),
     ],
 )
 def test_a_slip_in_an_expectation_has_its_way_out(statement, code, says):
