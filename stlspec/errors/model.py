@@ -137,6 +137,10 @@ class StlspecError(Exception):
         self.diagnostics = tuple(diagnostics)
         super().__init__("\n".join(render(d) for d in self.diagnostics))
 
+    def __reduce__(self) -> tuple[type["StlspecError"], tuple[tuple[Diagnostic, ...]]]:
+        """Let an error travel between processes: made again from its diagnostics, not from its text."""
+        return type(self), (self.diagnostics,)
+
 
 class SpecError(StlspecError):
     """The text of a spec has errors."""

@@ -1,14 +1,17 @@
-"""Policies from inferred rewards: Algorithm 2 of the paper, for one goal and a table of deterministic moves.
+"""Policies from inferred rewards: Algorithms 2 and 3 of the paper, over tables of deterministic moves.
 
 The data flows one way through the modules:
-task (spec and environment as tables over states) and settings -> evidence (demonstrations as a reward map and
-first entries of the mask) -> shaping (what a step pays) and promises (the potential) -> qstl (training) ->
-policy (the greedy path) -> farming (what goes wrong with the reward as printed) -> outcome -> results, plots,
-storage (the directory of a run), with resume for interrupted runs. `training.learn` is the whole line.
+goals and orders (what the spec wants visited) and memory and product (what its hard requirements remember), over
+tables of conditions, make a task; settings -> evidence (demonstrations as a reward map and first entries of the
+mask) -> shaping (what a step pays) and promises (the potential) -> qstl (training) -> segments (from a state to a
+goal, kept by resume) -> tours and chains (through several goals) -> conclusion -> outcome, with policy and route,
+lessons and farming -> results, plots, account, storage (the directory of a run). `training.learn` is the whole line,
+`many.learn_many` many of them at once.
 """
 
+from stlspec.learning.many import learn_many
 from stlspec.learning.outcome import Outcome, Training
 from stlspec.learning.policy import Policy, load_policy
 from stlspec.learning.training import learn
 
-__all__ = ["Outcome", "Policy", "Training", "learn", "load_policy"]
+__all__ = ["Outcome", "Policy", "Training", "learn", "learn_many", "load_policy"]

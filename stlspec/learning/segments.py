@@ -5,6 +5,7 @@ gives back depends on the job alone, bit for bit, whoever does it and however of
 every chunk of episodes the greedy path is looked at; whether it is any good is judged later, by the spec.
 """
 
+import os
 import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -13,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
+from threading import Thread
 
 from stlspec.learning import resume, storage
 from stlspec.learning.policy import greedy_path
@@ -27,6 +29,8 @@ CHECKPOINT_SECONDS = 1.0
 
 CHECKPOINT_SHARE = 0.05
 """The largest share of the time that may go into keeping it."""
+
+_WATCH_SECONDS = 0.5
 
 Advance = Callable[[int, int], object]
 """Called between chunks with episodes and steps of the segment so far; what it raises ends training."""
@@ -156,8 +160,7 @@ def trainer(jobs: int, advance: Callable[[int, int, int], object] | None = None)
     if jobs == 1:
         yield lambda work: [train(job, _numbered(advance, i)) for i, job in enumerate(work)]
         return
-    # a fresh interpreter for each process: a forked one would inherit locks that the progress bar holds
-    with ProcessPoolExecutor(jobs, get_context("spawn"), _ignore_interrupts) as pool:
+    with pool_of(jobs) as pool:
 
         def parallel(work: list[Job]) -> list[Segment]:
             if len(work) == 1:
@@ -169,11 +172,23 @@ def trainer(jobs: int, advance: Callable[[int, int, int], object] | None = None)
                 segments.append(segment)
             return segments
 
+        yield parallel
+
+
+@contextmanager
+def pool_of(jobs: int) -> Iterator[ProcessPoolExecutor]:
+    """Offer processes that end with this one, however it ends.
+
+    Not in the paper: training in parallel.
+    """
+    # a fresh interpreter for each process: a forked one would inherit locks that the progress bar holds
+    with ProcessPoolExecutor(jobs, get_context("spawn"), _begin_process, (os.getpid(),)) as pool:
         try:
-            yield parallel
+            yield pool
         except BaseException:
+            processes = list((pool._processes or {}).values())
             pool.shutdown(wait=False, cancel_futures=True)
-            for process in list((pool._processes or {}).values()):
+            for process in processes:
                 process.terminate()
             raise
 
@@ -182,9 +197,16 @@ def _numbered(advance: Callable[[int, int, int], object] | None, number: int) ->
     return None if advance is None else lambda episodes, steps: advance(number, episodes, steps)
 
 
-def _ignore_interrupts() -> None:
-    """Let Ctrl-C reach the parent alone, which ends its processes."""
+def _begin_process(parent: int) -> None:
+    """Let Ctrl-C reach the parent alone, which ends its processes; and end where the parent was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_outlive_not, args=(parent,), daemon=True).start()
+
+
+def _outlive_not(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(_WATCH_SECONDS)
+    os._exit(1)
 
 
 def shared_mask(task: Task, segments: Iterable[Segment], violating: Iterable[bool]) -> set[tuple[int, int]]:

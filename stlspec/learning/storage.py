@@ -124,7 +124,7 @@ def _checkpoint(out: Path, fingerprint: str) -> Path:
 def save_checkpoint(out: Path, fingerprint: str, state: Mapping[str, Any]) -> None:
     """Keep the state of a segment; a crash while writing leaves the checkpoint before it."""
     place = _checkpoint(out, fingerprint)
-    fresh = place.with_name(place.name + ".new")
+    fresh = place.with_name(f"{place.name}.{os.getpid()}.new")
     document = {"schema": CHECKPOINT_SCHEMA, "fingerprint": fingerprint, **state}
     try:
         place.parent.mkdir(parents=True, exist_ok=True)

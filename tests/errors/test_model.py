@@ -1,5 +1,7 @@
 """Diagnostics as people and programs see them, and the exceptions that carry them."""
 
+import pickle
+
 import pytest
 
 from stlspec.errors import (
@@ -89,3 +91,11 @@ def test_every_exception_carries_its_diagnostics_and_exit_code(kind, code, paren
     assert isinstance(error, parent)
     assert (error.exit_code, error.diagnostics) == (code, (REVERSED,))
     assert "error[I401]" in str(error)
+
+
+def test_an_error_travels_between_processes() -> None:
+    for kind in (StlspecError, SpecError, BundleError, DataError, UsageError):
+        error = kind([diagnostic("D863", file="R.json", problem="empty")])
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is kind
+        assert (again.diagnostics, str(again)) == (error.diagnostics, str(error))
