@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 
 from stlspec import __version__
-from stlspec.cli import conformance, data, importing, language, monitoring, testing, training
+from stlspec.cli import conformance, data, importing, language, monitoring, recording, testing, training
 from stlspec.cli.options import expand_many
 from stlspec.cli.output import error_document, print_diagnostics, print_json
 from stlspec.errors import Diagnostic, StlspecError, UsageError, diagnostic
@@ -54,6 +54,7 @@ def build() -> typer.Typer:
     app.command("learn")(training.learn)
     app.command("test")(testing.test_specs)
     app.command("import")(importing.import_spec)
+    app.command("record")(recording.record)
     app.command("conform")(conformance.conform)
     return app
 

@@ -1,0 +1,1 @@
+"""Recording demonstrations in a browser: world, drawing of frames -> session -> desk -> server -> recording."""
