@@ -12,7 +12,7 @@ from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.intervals import ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
 from stlspec.compiler.quantities import Quantities, Unit
-from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.hints import OPERATOR_WORDS
 from stlspec.lang.nodes import (
     Call,
@@ -247,7 +247,7 @@ class Inference:
     def _comparison(self, node: Infix, below: list[Typing]) -> Typing:
         for operator in node.operators:
             if operator.word == "assign":
-                return self._report("S008", operator.span)
+                return self._report("S008", operator.span, edits=(Edit(operator.span, "=="),))
         words = {operator.word for operator in node.operators}
         if len(node.operators) > 1 and not (words <= {"lt", "le"} or words <= {"gt", "ge"}):
             return self._report("S022", node.operators[1].span)

@@ -10,7 +10,7 @@ from typing import Any
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
-from stlspec.errors import Diagnostic, diagnostic
+from stlspec.errors import Diagnostic, Edit, diagnostic
 from stlspec.lang.nodes import Expression, Interval, Number
 from stlspec.lang.units import NANOSECONDS, STEP, spell
 from stlspec.source import SourceText, Span
@@ -97,7 +97,8 @@ def _check_order(low: float, high: float, span: Span, texts: list[str], spans: l
     if low == math.inf:
         report("I404", span, problem="it begins at infinity", help="write [0, inf]")
     elif low > high:
-        report("I401", span, low=texts[0], high=texts[1])
+        edits = tuple(map(Edit, spans, reversed(texts)))
+        report("I401", span, edits=edits, low=texts[0], high=texts[1])
 
 
 def _rounded(low: float, high: float, interval: Interval, texts: list[str], time: TimeBase, report) -> Ticks | None:  # type: ignore[no-untyped-def]

@@ -13,6 +13,8 @@ from stlspec.errors.model import (
     Code,
     DataError,
     Diagnostic,
+    Edit,
+    Fix,
     InputError,
     Label,
     Severity,
@@ -29,6 +31,8 @@ __all__ = [
     "Code",
     "DataError",
     "Diagnostic",
+    "Edit",
+    "Fix",
     "InputError",
     "Label",
     "Severity",
@@ -52,10 +56,15 @@ def diagnostic(
     span: Span | None = None,
     file: str | None = None,
     labels: tuple[Label, ...] = (),
+    edits: tuple[Edit, ...] = (),
     **fields: Any,
 ) -> Diagnostic:
-    """Make the diagnostic `code` at a place, its templates filled with `fields`."""
+    """Make the diagnostic `code` at a place, its templates filled with `fields`.
+
+    edits: what the help says, for a program to do; titled with the help.
+    """
     row = CATALOGUE[code]
+    way = row.help.format(**fields)
     return Diagnostic(
         code=code,
         severity=row.level,
@@ -64,6 +73,7 @@ def diagnostic(
         source=source,
         span=span,
         label=row.label.format(**fields),
-        help=row.help.format(**fields),
+        help=way,
         labels=labels,
+        fixes=(Fix(way or row.title, edits),) if edits else (),
     )

@@ -51,10 +51,33 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
+class Edit:
+    """A stretch of the diagnostic's source and the text to write in its place; an empty stretch is an insertion."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A way out that a program can take: the help as edits, ordered by place, none overlapping another."""
+
+    title: str
+    edits: tuple[Edit, ...]
+
+    def applied(self, text: str) -> str:
+        """Return `text`, which is that of the diagnostic's source, with the edits made."""
+        for edit in reversed(self.edits):
+            text = text[: edit.span.start] + edit.text + text[edit.span.end :]
+        return text
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One thing that is wrong, where, why, and the way out.
 
-    source and span are None when the place is not in a spec; file then names the input, if there is one.
+    source and span are None when the place is not in a spec; file then names the input, if there is one. Each of
+    fixes is a way out by itself, the likeliest first; there is none where only the author knows what was meant.
     """
 
     code: str
@@ -66,6 +89,7 @@ class Diagnostic:
     label: str = ""
     help: str = ""
     labels: tuple[Label, ...] = ()
+    fixes: tuple[Fix, ...] = ()
 
     def sort_key(self) -> tuple[str, int, str]:
         """Order by file, then place, then code."""
@@ -81,7 +105,12 @@ class Diagnostic:
             **_place(self.source, self.span),
             "help": self.help or None,
             "labels": [{"message": x.text, "file": x.source.name, **_place(x.source, x.span)} for x in self.labels],
+            "fixes": [self._fix_to_json(fix) for fix in self.fixes],
         }
+
+    def _fix_to_json(self, fix: Fix) -> dict[str, Any]:
+        edits = [{**_place(self.source, edit.span), "text": edit.text} for edit in fix.edits]
+        return {"title": fix.title, "edits": edits}
 
 
 def _place(source: SourceText | None, span: Span | None) -> dict[str, int | None]:

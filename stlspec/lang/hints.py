@@ -11,7 +11,8 @@ from itertools import pairwise
 
 from lark import Token
 
-from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.errors import Diagnostic, Edit, Label, diagnostic
+from stlspec.lang.expected import expected, quoted
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, is_word
 from stlspec.lang.tree import span_of
@@ -33,17 +34,8 @@ _CLOSING = {"LPAR": (")", "RPAR"), "LSQB": ("]", "RSQB"), "LBRACE": ("}", "RBRAC
 """For each opening bracket the closing one, and its terminal."""
 _CLOSES = frozenset(terminal for _, terminal in _CLOSING.values())
 _CLAUSE_WORDS = {"depends": "on", "scale": "NUMBER", "bound": "NAME"}
-_SHOWN = {
-    "NAME": "a name",
-    "NUMBER": "a number",
-    "STRING": "a quoted text",
-    "UNIT": "a unit",
-    "$END": "the end of the statement",
-}
 _FOREIGN = frozenset({"input", "output", "const", "float", "specification"})
 """Words with which statements of RTAMT begin."""
-_WORDS = "depends on,on,scale,bound,unit,in,from,holds,fails,episode,at,margin,is,outranks".split(",")
-"""Words of clauses, as they are named where they fit."""
 _SIGNS = {
     "^": "**",
     "≥": ">=",
@@ -103,9 +95,17 @@ class Failure:
         end = span_of(self.tokens[-1]).end
         return Span(end, end)
 
-    def error(self, code: str, *, at: Span | None = None, labels: tuple[Label, ...] = (), **fields: str) -> Diagnostic:
+    def error(
+        self,
+        code: str,
+        *,
+        at: Span | None = None,
+        labels: tuple[Label, ...] = (),
+        edits: tuple[Edit, ...] = (),
+        **fields: str,
+    ) -> Diagnostic:
         """Make the diagnostic `code` at `at`, or at the token that does not fit."""
-        return diagnostic(code, source=self.source, span=at or self.span, labels=labels, **fields)
+        return diagnostic(code, source=self.source, span=at or self.span, labels=labels, edits=edits, **fields)
 
 
 def describe(failure: Failure) -> Diagnostic:
@@ -128,7 +128,7 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
     if token.type == "BAD_CHARACTER" or braces:
         sign = "," if str(token) == ";" and failure.brackets else _SIGNS.get(str(token))
         way = f"write `{sign}` in its place" if sign else "remove it; words and signs of the language are plain ASCII"
-        return failure.error("S005", character=_quoted(str(token)), help=way)
+        return failure.error("S005", character=quoted(str(token)), help=way)
     if token.type == "WALRUS":
         name = str(failure.tokens[failure.at - 1]) if failure.at else "p"
         return failure.error("S012", name=name)
@@ -148,9 +148,9 @@ def _no_statement(failure: Failure) -> Diagnostic | None:
     if word in _FOREIGN or (is_word(failure.token) and _assigns(failure)):
         way = f"write `let {word} = ...`" if word not in _FOREIGN and close is None else "declare it with `signal`"
         way += "; a whole spec of RTAMT is translated by `stlspec import FILE`"
-        return failure.error("S003", word=_quoted(word), help=way)
+        return failure.error("S003", word=quoted(word), help=way)
     way = f"did you mean `{close}`?" if close else f"begin with one of: {', '.join(STATEMENT_WORDS)}"
-    return failure.error("S003", word=_quoted(word), help=way)
+    return failure.error("S003", word=quoted(word), help=way)
 
 
 def _assigns(failure: Failure) -> bool:
@@ -191,7 +191,8 @@ def _misspelt_operator(failure: Failure) -> Diagnostic | None:
             continue
         close = closest(word, OPERATOR_WORDS, 0.75)
         if close:
-            return failure.error("S018", at=span_of(failure.tokens[i]), word=word, meant=close)
+            span = span_of(failure.tokens[i])
+            return failure.error("S018", at=span, edits=(Edit(span, close),), word=word, meant=close)
     return None
 
 
@@ -284,7 +285,7 @@ def _open_bracket(failure: Failure) -> Diagnostic | None:
     last = _last_bound(failure, failure.tokens.index(opening)) if closing == "]" else None
     before = last if last is not None else failure.tokens[failure.at - 1]
     at = Span(span_of(last).end, span_of(last).end) if last is not None else None
-    way = f"write `{closing}` after {_quoted(str(before))}"
+    way = f"write `{closing}` after {quoted(str(before))}"
     return failure.error("S004", at=at, labels=(label,), closing=closing, help=way)
 
 
@@ -338,11 +339,11 @@ def _cut_off(failure: Failure) -> Diagnostic | None:
     if failure.token is not None:
         return None
     last = str(failure.tokens[-1])
-    return failure.error("S002", last=_quoted(last), expected=_expected(failure.expected))
+    return failure.error("S002", last=quoted(last), expected=expected(failure.expected))
 
 
 def _plain(failure: Failure) -> Diagnostic:
-    return failure.error("S001", found=_quoted(str(failure.token)), expected=_expected(failure.expected))
+    return failure.error("S001", found=quoted(str(failure.token)), expected=expected(failure.expected))
 
 
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
@@ -360,34 +361,3 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _listed_names,
     _cut_off,
 )
-
-
-def _quoted(text: str) -> str:
-    shown = "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text)
-    return f"`{shown if len(shown) <= 30 else shown[:29] + '…'}`"
-
-
-def _expected(terminals: frozenset[str]) -> str:
-    """Name at most five things that fit, in the words of the language."""
-    named: list[str] = []
-    if {"NAME", "NUMBER", "LPAR"} <= terminals:
-        named.append("a formula" if "NOT" in terminals else "a number or a signal")
-    else:
-        if {"AND", "OR"} <= terminals:
-            named.append("an operator")
-        elif "PLUS" in terminals:
-            named.append("an arithmetic operator")
-        named += [text for terminal, text in _SHOWN.items() if terminal in terminals]
-    signs = {"COMMA": ",", "COLON": ":", "RPAR": ")", "RSQB": "]", "RBRACE": "}", "ASSIGN": "=", "LSQB": "["}
-    if "AND" not in terminals and "NOT" not in terminals:
-        signs_shown = [f"`{sign}`" for terminal, sign in signs.items() if terminal in terminals]
-    else:
-        signs_shown = [f"`{s}`" for t, s in signs.items() if t in terminals and t in ("RPAR", "RSQB", "COMMA")]
-    named = signs_shown + named
-    named += ["data in braces"] if "LBRACE" in terminals else []
-    named += ["`>=`"] if "GE" in terminals and "LT" not in terminals else []
-    named += [f"`{w}`" for w in _WORDS if w.split()[0].upper().replace("UNIT", "UNIT_WORD") in terminals]
-    shown = named[:5]
-    if len(shown) < 2:
-        return shown[0] if shown else "nothing more"
-    return f"{', '.join(shown[:-1])} or {shown[-1]}"

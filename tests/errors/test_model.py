@@ -7,6 +7,7 @@ import pytest
 from stlspec.errors import (
     BundleError,
     DataError,
+    Edit,
     InputError,
     Label,
     SpecError,
@@ -64,9 +65,21 @@ def test_json_has_lines_and_columns_from_one_and_nulls_where_unknown():
         "end_column": 25,
         "help": "write [1 s, 3 s]",
         "labels": [],
+        "fixes": [],
     }
     nowhere = diagnostic("G506").to_json()
     assert (nowhere["file"], nowhere["line"], nowhere["end_column"]) == (None, None, None)
+
+
+def test_a_fix_makes_all_its_edits_and_shows_them_with_places():
+    span = Span(14, 15)
+    edits = (Edit(Span(7, 8), "e"), Edit(Span(8, 8), " in"), Edit(span, ""))
+    found = diagnostic("N102", source=SOURCE, span=span, edits=edits, name="a")
+    (fix,) = found.fixes
+    assert fix.title == found.help
+    assert fix.applied("signal d\nhard d") == "signal e in\nhard "
+    (shown,) = found.to_json()["fixes"]
+    assert shown["edits"][0] == {"line": 1, "column": 8, "end_line": 1, "end_column": 9, "text": "e"}
 
 
 def test_diagnostics_sort_by_file_then_place_then_code():
