@@ -203,7 +203,8 @@ class Inference:
         name = node.function.text
         if self.sees(name):
             return self._report("N103", node.function.span, name=name, help=f"write `{name}` without arguments")
-        if name in self.silent or self.nameless:
+        # `let nearx, r) = ...`, which has lost a bracket, may have been meant to declare `near`.
+        if self.nameless or any(lost.startswith(name) for lost in self.silent):
             return BROKEN
         templates = [other for other, let in self.declared.lets.items() if let.arguments and self.sees(other)]
         close = closest(name, [*templates, *FUNCTIONS, *OPERATOR_WORDS])

@@ -103,6 +103,8 @@ def begins_like_statement(tokens: Sequence[Token], i: int, names: frozenset[str]
     if i + 1 == len(tokens) or tokens[i + 1].line != token.line:
         return token.type == "TIME"
     meant = closest(str(token), STATEMENT_WORDS, 0.7)
+    if tokens[i + 1].type == "STRING":
+        return meant in ("expect", "use")
     return meant == "time" if tokens[i + 1].type == "NUMBER" else meant is not None and is_word(tokens[i + 1])
 
 

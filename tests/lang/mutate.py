@@ -59,6 +59,18 @@ hard vent:
     G[0, 100] (high => F[0, 3] valve)
 hard never depends on vent: !(high && X high && X X high)
 soft calm depends on vent, never: (valve R high) <-> (valve W high)""",
+    """spec tested "A spec with templates and its own tests"
+signal d_obs
+signal d_goal unit "m"
+param far = 3 m
+let near(x, r) = x < r
+let soon(p, k) = eventually[0, k] (p and not near(d_obs, 1))
+hard avoid: always not near(d_obs, 1)
+soft reach depends on avoid: soon(near(d_goal, far), 20)
+expect avoid fails on {d_obs: [2, 0.5, 3], time: [0, 1, 2]} at 1 margin >= 0.5
+expect reach holds on "demos/one.csv" episode 3
+expect "demos/one.csv" episode "a detour" is incomplete
+expect "demos/one.csv" outranks "demos/two.csv"  # at last""",
 ]
 BEGINS = re.compile(r"(spec|time|signal|param|let|hard|soft|expect)\b")
 TOKEN = re.compile(r'#[^\n]*|"[^"\n]*"|[A-Za-z_][A-Za-z_0-9]*|[0-9.]+|[<>=!*&|:-]+|\S')
