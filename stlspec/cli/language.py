@@ -34,6 +34,7 @@ def check(
         except InputError as error:
             found += error.diagnostics
             exit_code = 2
+    found = list(dict.fromkeys(found))  # a file that is checked and used by another speaks once
     errors = sum(d.severity == "error" for d in found)
     exit_code = max(exit_code, 1 if errors else 0)
     if output is Format.JSON:

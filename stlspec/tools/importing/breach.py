@@ -22,12 +22,12 @@ _SIGNS = (
 _COMMENT = r"[#%][^\r\n]*|//[^\r\n]*"
 _OR, _IMPLIES, _AND, _UNTIL, _PREFIX, _COMPARE, _SUM, _PRODUCT, _NEGATION, _POWER = range(1, 11)
 _RIGHT = {
-    **dict.fromkeys(("or", "|", "||"), ("or", _OR)),
     **dict.fromkeys(("=>", "->"), ("implies", _IMPLIES)),
-    **dict.fromkeys(("and", "&", "&&"), ("and", _AND)),
     **dict.fromkeys(("until", "until_", "U", "U_"), ("until", _UNTIL)),
 }
 _LEFT = {
+    **dict.fromkeys(("or", "|", "||"), ("or", _OR)),
+    **dict.fromkeys(("and", "&", "&&"), ("and", _AND)),
     "<": ("lt", _COMPARE),
     "<=": ("le", _COMPARE),
     ">": ("gt", _COMPARE),

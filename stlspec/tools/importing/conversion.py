@@ -14,6 +14,7 @@ from stlspec.lang.parse import Syntax, parse
 from stlspec.source import SourceText
 from stlspec.tools.importing import breach, rtamt
 from stlspec.tools.importing.model import refuse_broken
+from stlspec.tools.importing.python import looks_like_program
 from stlspec.tools.importing.writing import spec_text
 
 READERS = {"rtamt": rtamt.read, "breach": breach.read}
@@ -49,7 +50,8 @@ def convert(source: SourceText, tool: str | None = None, time: str | None = None
         raise SpecError([diagnostic("S043", file=source.name, what=what, help=way)])
     if tool is None:
         _refuse_own(source)
-        tool = "breach" if _BREACH.search(source.text) else "rtamt"
+        program = looks_like_program(source)
+        tool = "breach" if _BREACH.search(source.text) and not program else "rtamt"
     draft = READERS[tool](source, time)
     if not draft.problems and not draft.assigned:
         what = f"no formula of {draft.tool} is here"

@@ -27,6 +27,8 @@ from stlspec.tools.importing.tokens import Cursor, Token, number_of
 
 DEEPEST = 100
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
+_CHAINS = (frozenset({"and"}), frozenset({"or"}), frozenset({"add", "sub"}), frozenset({"mul", "div"}))
+"""Operators of one level that may stand in one chain."""
 ARITHMETIC = frozenset({"add", "sub", "mul", "div", "pow", "neg"})
 
 
@@ -79,8 +81,8 @@ class Formulas:
         self._depth += 1
         if self._depth > DEEPEST:
             self.cursor.refuse("S007", self.cursor.token.span, deepest=DEEPEST)
-        left = self._primary()
-        while True:
+        left, nested = self._primary(), 0
+        while nested <= DEEPEST:
             token = self.cursor.token
             binding = self.dialect.infixes.get(token.text) if token.kind in ("word", "sign") else None
             if binding is None or binding.level < level:
@@ -88,9 +90,23 @@ class Formulas:
             self.cursor.take()
             operator = Operator(token.span, binding.word, self._interval(binding.word))
             right = self.formula(binding.operand)
-            left = Infix(left.span.to(right.span), (operator,), (left, right))
+            if isinstance(left, Infix) and self._goes_on(left, operator):
+                left = Infix(left.span.to(right.span), (*left.operators, operator), (*left.operands, right))
+            else:
+                left, nested = Infix(left.span.to(right.span), (operator,), (left, right)), nested + 1
+        if nested > DEEPEST:
+            self.cursor.refuse("S007", self.cursor.token.span, deepest=DEEPEST)
         self._depth -= 1
         return left
+
+    def _goes_on(self, left: Infix, operator: Operator) -> bool:
+        """Tell whether an operator goes on with a flat chain, such as `a + b - c`, read from the left."""
+        word = left.operators[0].word
+        together = next((words for words in _CHAINS if word in words), frozenset())
+        return operator.word in together and self._level(word) == self._level(operator.word)
+
+    def _level(self, word: str) -> int | None:
+        return next((b.level for b in self.dialect.infixes.values() if b.word == word), None)
 
     def _primary(self) -> Expression:
         cursor, dialect = self.cursor, self.dialect

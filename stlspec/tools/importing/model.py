@@ -50,12 +50,13 @@ class Draft:
     """A spec in the making, in the names of the foreign text.
 
     assigned: formulas by name, in order. values: of params; None for one without. problems: errors and warnings.
-    implied: signals and params that are used and not declared.
+    implied: signals and params that are used and not declared. bound_unit: of bounds, if not that of the time.
     """
 
     source: SourceText
     tool: str
     time: TimeStatement
+    bound_unit: str | None = None
     title: Name | None = None
     signals: dict[str, SignalStatement] = field(default_factory=dict)
     values: dict[str, tuple[Name, Number | None]] = field(default_factory=dict)
@@ -68,7 +69,7 @@ class Draft:
     @property
     def unit(self) -> str | None:
         """The unit of bounds that have none; None where they count samples."""
-        return None if self.time.unit.text == STEP else self.time.unit.text
+        return None if self.time.unit.text == STEP else self.bound_unit or self.time.unit.text
 
     def report(self, code: str, span: Span, **fields: Any) -> None:
         """Note an error or a warning."""

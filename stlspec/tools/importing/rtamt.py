@@ -6,16 +6,19 @@ them to the left, `implies` too. A number stands for a formula there whose robus
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from stlspec.lang.nodes import Expression, Infix, Name, Number, Operator, Prefix, Unit
 from stlspec.source import SourceText, Span
 from stlspec.tools.importing.formulas import COMPARISONS, Binding, Dialect, Formulas, bare, is_real, positive
 from stlspec.tools.importing.model import UNITS, Draft, time_statement
+from stlspec.tools.importing.python import Embedded, embedded, looks_like_program
 from stlspec.tools.importing.tokens import Cursor, Token, Unreadable, lex, number_of
 
 TOOL = "RTAMT"
 DEFAULT_TIME = "1 s"
 """Its default sampling period, with bounds in seconds."""
+DEFAULT_UNIT = "s"
 _WORD = r"[A-Za-z_$][A-Za-z_$0-9./]*"
 _SIGNS = ("!==", "<->", "->", "==", ">=", "<=", *"-+*/(){}[];:,.@!|&><=")
 _COMMENT = r"/\*.*?\*/|//[^\r\n]*"
@@ -38,7 +41,13 @@ _PREFIXES = (
     *(("next", "wnext", 15), ("X", "wnext", 15), ("s_prev", "prev", 14), ("sY", "prev", 14)),
     *(("s_next", "next", 13), ("sX", "next", 13), ("-", "neg", 27)),
 )
-_FUNCTIONS = {"abs": ("abs", 1), "sqrt": ("sqrt", 1), "exp": ("exp", 1), "ln": ("log", 1), "pow": ("pow", 2)}
+_FUNCTIONS = {
+    **{name: (name, 1) for name in ("abs", "sqrt", "exp", "sin", "cos")},
+    "ln": ("log", 1),
+    "pow": ("pow", 2),
+    "min": ("min", 2),
+    "max": ("max", 2),
+}
 _INTERVALS = frozenset("always eventually historically once until unless since".split())
 
 
@@ -68,15 +77,29 @@ _DIALECT = Dialect(
 
 
 def read(source: SourceText, time: str | None = None) -> Draft:
-    """Read a spec of RTAMT.
+    """Read a spec of RTAMT, from a file of its own or inside a Python program.
 
     Not in the paper: other tools' languages.
 
     Args:    time: how time is measured, as after `time` in a spec; None: its default, a sample every second.
     Returns: what it says; `problems` holds what cannot be carried over.
     """
+    if looks_like_program(source):
+        program = embedded(source)
+        draft = _read(program.source, time or program.period or DEFAULT_TIME, program)
+        draft.source = source
+        draft.problems = [replace(problem, source=source) for problem in draft.problems]
+        return draft
+    return _read(source, time or DEFAULT_TIME)
+
+
+def _read(source: SourceText, time: str, program: Embedded | None = None) -> Draft:
     tokens, comments = lex(source, _WORD, _SIGNS, _COMMENT)
-    draft = Draft(source, TOOL, time_statement(time or DEFAULT_TIME), comments=comments)
+    draft = Draft(source, TOOL, time_statement(time), comments=comments)
+    if program is not None:
+        draft.bound_unit = program.unit or (DEFAULT_UNIT if program.period else None)
+        for name, span, value in program.constants:
+            draft.values[name] = (Name(span, name), Number(span, value, None))
     reader = _Reader(Cursor(source, tokens, TOOL), draft)
     while not reader.cursor.at_end:
         first = reader.cursor.token

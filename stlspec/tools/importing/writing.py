@@ -125,7 +125,7 @@ def _text(node: Expression) -> Text:
         case Prefix(_, operator, operand):
             return _prefix(operator, _text(operand))
         case Infix(_, operators, operands):
-            return _infix(operators[0], [_text(operand) for operand in operands])
+            return _infix(operators, [_text(operand) for operand in operands])
 
 
 def _prefix(operator: Operator, operand: Text) -> Text:
@@ -134,18 +134,20 @@ def _prefix(operator: Operator, operand: Text) -> Text:
     return f"{operator.word}{_interval(operator.interval)} {_wrapped(operand, _PREFIX)}", _PREFIX
 
 
-def _infix(operator: Operator, operands: Sequence[Text]) -> Text:
-    word = operator.word
-    left, right = operands
+def _infix(operators: Sequence[Operator], operands: Sequence[Text]) -> Text:
+    word, (left, right) = operators[0].word, operands[:2]
     if word == "pow":
         return f"{_wrapped(left, _ATOM)} ** {_wrapped(right, _NEGATION)}", _POWER
     if word in _LEVELS:
         level = _LEVELS[word]
         # Sums of floating-point numbers do not associate: a right operand of the same level keeps its brackets.
-        return f"{_wrapped(left, level)} {_SIGNS[word]} {_wrapped(right, level + 1)}", level
+        pairs = zip(operators, operands[1:], strict=True)
+        rest = "".join(f" {_SIGNS[operator.word]} {_wrapped(operand, level + 1)}" for operator, operand in pairs)
+        return _wrapped(left, level) + rest, level
     if word in _SIGNS:
         return f"{_wrapped(left, _SUM)} {_SIGNS[word]} {_wrapped(right, _SUM)}", _COMPARISON
-    return f"{_wrapped(left, _PREFIX)} {word}{_interval(operator.interval)} {_wrapped(right, _PREFIX)}", _BOOLEAN
+    sign = f" {word}{_interval(operators[0].interval)} "
+    return sign.join(_wrapped(operand, _PREFIX) for operand in operands), _BOOLEAN
 
 
 def _interval(interval: Interval | None) -> str:

@@ -37,7 +37,8 @@ def read(text):
     ("text", "written"),
     [
         ("a < b | c", "(a < b) or c"),
-        ("a | b | c", "(a or b) or c"),
+        ("a | b | c", "a or b or c"),
+        ("(a | b) | c", "(a or b) or c"),
         ("a -> b -> c", "a implies (b implies c)"),
         ("G a | b", "always (a or b)"),
         ("G a -> b", "always a implies b"),

@@ -4,11 +4,10 @@ import random
 
 import pytest
 
-import stlspec
-from stlspec.errors import SpecError
+from stlspec.errors import DataError, SpecError
 from stlspec.source import SourceText
 from stlspec.tools.importing.conversion import convert
-from tests.peers.imports import case
+from tests.peers.imports import case, own_values
 
 
 def text_of(text, time=None):
@@ -82,7 +81,7 @@ def test_words_of_this_language_are_renamed_and_read_from_their_column():
     [
         ("out = abs(x > 1) > 0", "S040", "x > 1"),
         ("out = (x > 1) > 2", "S040", "x > 1"),
-        ("out = max(x, y) > 1", "S040", "max"),
+        ("out = log(x, y) > 1", "S040", "log"),
         ("complex z\nout = x > 1", "S040", "complex"),
         ("Pose p\nout = x > 1", "S041", "p"),
         ("from geometry import Pose\nout = x > 1", "S040", "from"),
@@ -107,7 +106,7 @@ def test_what_cannot_be_carried_is_said_at_its_place(text, code, place):
 
 def test_every_broken_statement_is_reported_in_one_run():
     with pytest.raises(SpecError) as caught:
-        text_of("complex z\na = x >\nb = max(x) > 1\nc = x > 1")
+        text_of("complex z\na = x >\nb = log(x) > 1\nc = x > 1")
     assert [p.code for p in caught.value.diagnostics] == ["S040", "S041", "S040"]
 
 
@@ -119,6 +118,9 @@ def test_where_the_robustness_differs_it_is_said():
 def test_few_brackets_and_all_brackets_mean_the_same_in_random_specs():
     rng = random.Random(2)
     for _ in range(150):
-        few, full, _ = case(rng)
-        one, other = (stlspec.compile(text_of(text, "step")) for text in (few, full))
-        assert one.meaning_sha256 == other.meaning_sha256, few
+        few, full, signals = case(rng)
+        try:
+            assert own_values(few, signals) == own_values(full, signals), few
+        except DataError:  # 0 / 0 has no value, with whatever brackets
+            with pytest.raises(DataError):
+                own_values(full, signals)
