@@ -27,6 +27,7 @@ from stlspec.formulas import FormulaResult
 from stlspec.learning import Outcome
 from stlspec.learning.account import sources, taught, way_on_map
 from stlspec.learning.lessons import Source
+from stlspec.learning.satisfaction import Satisfaction
 from stlspec.rewards import RewardMap
 from stlspec.scores import DemonstrationScore, Ranking, moment
 
@@ -219,10 +220,17 @@ def progress(stream: TextIO) -> Iterator[Progress]:
 def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment, out: Path, stream: TextIO) -> None:
     """Print what was learnt: requirements with margins, the path on the map, the training, the files."""
     console = console_for(stream)
+    chance = outcome.satisfaction
     success = "meets every requirement" if outcome.success else "does not meet every requirement"
+    if chance is not None:
+        success = f"meets every requirement with probability {interval_of(chance)}"
     console.print(Text(f"The policy {success}.", "bold green" if outcome.success else "bold yellow"))
     table = Table(box=None, pad_edge=False, show_header=False)
     for requirement in bundle.requirements:
+        if chance is not None:
+            likely = f"holds with probability {chance.alone[requirement.name]:.3f}"
+            table.add_row(Text(f"  {requirement.name}"), requirement.strength, likely)
+            continue
         result = outcome.evaluation[requirement.name]
         verdict = result.verdict.value
         mark = Text(f"  {_MARKS[verdict]} {requirement.name}", _STYLES.get(verdict, ""))
@@ -247,6 +255,13 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
 def print_source(source: Source, stream: TextIO) -> None:
     """Print where the reward of a state comes from."""
     console_for(stream).print(Text("\n".join(sources(source))))
+
+
+def interval_of(found: Satisfaction) -> str:
+    """Return a probability as text: the number where it is exact, else with its interval."""
+    if found.method == "exact":
+        return f"{found.value:.4f}"
+    return f"{found.value:.3f} (95 % interval {found.low:.3f} to {found.high:.3f}, {found.n} runs)"
 
 
 def _training_lines(outcome: Outcome) -> list[str]:

@@ -7,7 +7,7 @@ every rule is a function of its own here, so that the map can be worked out by h
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -91,7 +91,7 @@ class RewardMap:
         Returns: (n_states,).
         Raises:  DataError D862: the environment lacks one of the states.
         """
-        table = [0.0] * environment.n_states
+        table = [0.0] * environment.size
         for state, value in zip(self.states, self.values, strict=True):
             try:
                 table[environment.encode(state)] = value
@@ -196,9 +196,17 @@ def ranked_states(
     evaluated = evaluate_demonstrations(bundle, demonstrations, environment)
     ranking = rank_demonstrations(bundle, evaluated)
     return tuple(
-        _ranked(bundle, bound, evaluation, score)
+        _ranked(bundle, _with_bins_of(environment, bound), evaluation, score)
         for (bound, evaluation), score in zip(evaluated, ranking.demonstrations, strict=True)
     )
+
+
+def _with_bins_of(environment: Environment | None, bound: BoundDemonstration) -> BoundDemonstration:
+    """Number the states of a demonstration by the bins of `environment`, where it was made in the same one."""
+    home = bound.environment
+    if environment is None or home is None or home.size or environment.id != home.id:
+        return bound
+    return replace(bound, environment=environment)
 
 
 def infer_reward(
@@ -229,7 +237,7 @@ def reward_of(bundle: BundleData, ranked: Sequence[RankedStates], environment: E
     if home is None:
         return RewardMap(meaning, MappingProxyType({"id": None, "args": {}, "map": None}), (), ())
     for other in ranked:
-        if (other.environment.n_states, other.environment.n_columns) != (home.n_states, home.n_columns):
+        if _shape(other.environment) != _shape(home):
             last = other.environment.decode(max(other.states))
             raise _foreign(f"demonstration '{other.name}'", last, home)
     found = learner_reward([d.rank for d in ranked], [d.values for d in ranked])
@@ -237,9 +245,13 @@ def reward_of(bundle: BundleData, ranked: Sequence[RankedStates], environment: E
     return RewardMap(meaning, MappingProxyType(home.describe()), states, tuple(found.values()))
 
 
+def _shape(environment: Environment) -> tuple[Any, ...]:
+    return environment.n_states, environment.n_columns, environment.bins
+
+
 def _foreign(what: str, state: Any, environment: Environment) -> DataError:
     shown = list(state) if isinstance(state, tuple) else state
-    env, states = environment.id, environment.n_states
+    env, states = environment.id, environment.size
     return DataError([diagnostic("D862", state=shown, what=what, env=env, states=states)])
 
 
@@ -256,7 +268,7 @@ def _ranked(
     name, file = bound.name, bound.demonstration.file
     if bound.states is None:
         raise DataError([diagnostic("D861", file=file, name=name)])
-    if bound.environment is None or not bound.environment.n_states:
+    if bound.environment is None or not bound.environment.size:
         raise DataError([_numberless(bound)])
     assert score.label is not None
     assert score.reward is not None
@@ -268,7 +280,7 @@ def _ranked(
     ]
     violating = sorted({k for r, _, found in failed for k in violating_samples(bundle, r, found)})
     penalised = penalty([weight for _, weight, _ in failed], [found.bounded for _, _, found in failed])
-    states = tuple(int(s) for s in bound.states)
+    states = tuple(map(bound.environment.encode, bound.states))
     values = demonstration_values(states, score.label, score.reward, violating, penalised)
     return RankedStates(name, bound.environment, states, score.label, score.rank, MappingProxyType(values))
 
@@ -283,7 +295,7 @@ def _numberless(bound: BoundDemonstration) -> Diagnostic:
         way = 'correct or remove "env" in the demonstration'
     elif bound.environment is not None:
         reason = f"'{bound.environment.id}' does not number its states"
-        way = "use an environment with discrete states; raw observations cannot be given rewards yet"
+        way = "use an environment with discrete states, or cut its observations into bins: --bins 50,50"
     return diagnostic("D875", file=file, name=bound.name, reason=reason, help=way)
 
 

@@ -38,6 +38,13 @@ class Method(StrEnum):
     PLAIN = "plain"
 
 
+class Base(StrEnum):
+    """What a step pays."""
+
+    SPEC = "spec"
+    ENV = "env"
+
+
 def learn(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="where policy, log and pictures go")],
     spec: Annotated[Path | None, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")] = None,
@@ -64,8 +71,18 @@ def learn(
     epsilon: Annotated[float, typer.Option("--epsilon", help="share of random actions")] = 0.4,
     step_cost: Annotated[float, typer.Option("--step-cost", help="what each step costs")] = 0.01,
     mask: Annotated[
-        bool, typer.Option("--mask/--no-mask", help="never repeat a step that broke a hard requirement")
-    ] = True,
+        bool | None,
+        typer.Option(
+            "--mask/--no-mask",
+            help="never repeat a step that broke a hard requirement; by default where moves are deterministic",
+            show_default=False,
+        ),
+    ] = None,
+    base: Annotated[Base, typer.Option("--base", help="the spec's reward, or the environment's own")] = Base.SPEC,
+    bins: Annotated[
+        str | None,
+        typer.Option("--bins", metavar="N[,N...]", help="bins for each entry of a continuous observation"),
+    ] = None,
     jobs: Annotated[int, typer.Option("--jobs", help="processes, for segments between goals")] = 1,
     explain: Annotated[
         str | None,
@@ -98,6 +115,8 @@ def learn(
             epsilon=epsilon,
             step_cost=step_cost,
             mask=mask,
+            base=base.value,
+            bins=_counts(bins),
             jobs=jobs,
             demo_environment=demonstration_environment(env, env_arg, map_file, demo_env, demo_map),
             out=out,
@@ -149,6 +168,17 @@ def parse_state(text: str) -> int | tuple[int, int]:
         raise UsageError([diagnostic("D871", option="--explain", value=text[:40], allowed=allowed)])
     first, second = found.groups()
     return int(first) if second is None else (int(first), int(second))
+
+
+def _counts(bins: str | None) -> tuple[int, ...] | None:
+    """Read `--bins 50,50`."""
+    if bins is None:
+        return None
+    parts = [part.strip() for part in bins.split(",")]
+    if not all(part.isascii() and part.isdigit() and len(part) < 8 for part in parts):
+        allowed = "whole numbers from 1, separated by commas, as in 50,50"
+        raise UsageError([diagnostic("D871", option="--bins", value=bins[:40], allowed=allowed)])
+    return tuple(map(int, parts))
 
 
 @contextmanager

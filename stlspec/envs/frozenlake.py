@@ -48,6 +48,7 @@ def environment(args: Mapping[str, Any], map: Sequence[str] | None) -> Environme
     live = make_quietly(ID, options)
     outcomes = _outcomes(live.unwrapped.P)  # type: ignore[attr-defined]
     table = _table(outcomes)
+    payoffs = _payoffs(live.unwrapped.P)  # type: ignore[attr-defined]
     limit = live.spec.max_episode_steps if live.spec is not None else None
     live.close()
     return Environment(
@@ -60,6 +61,7 @@ def environment(args: Mapping[str, Any], map: Sequence[str] | None) -> Environme
         n_columns=grid.n_columns,
         table=table,
         outcomes=outcomes if table is None else None,
+        payoffs=payoffs,
         deterministic=table is not None,
         terminal=frozenset(grid.obstacles) | {cell for _, cells in grid.goals for cell in cells},
         max_steps=limit,
@@ -99,6 +101,12 @@ def _all(values: Any, *kinds: type) -> bool:
 
 def _outcomes(table: Mapping[int, Mapping[int, Sequence[tuple[float, int, float, bool]]]]) -> Outcomes:
     return tuple(tuple(_merged(table[s][a]) for a in range(len(table[s]))) for s in range(len(table)))
+
+
+def _payoffs(table: Mapping[int, Mapping[int, Sequence[tuple[float, int, float, bool]]]]) -> tuple[float, ...]:
+    """Return what entering each cell pays; a cell that cannot be entered pays nothing."""
+    found = {int(t): float(r) for row in table.values() for branches in row.values() for _, t, r, _ in branches}
+    return tuple(found.get(state, 0.0) for state in range(len(table)))
 
 
 def _merged(branches: Sequence[tuple[float, int, float, bool]]) -> tuple[tuple[float, int], ...]:

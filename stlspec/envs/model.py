@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from stlspec.envs.bins import Bins
 from stlspec.errors import DataError, diagnostic
 
 Outcomes: TypeAlias = tuple[tuple[tuple[tuple[float, int], ...], ...], ...]
@@ -37,7 +38,9 @@ class Environment:
     where episodes begin. n_columns: the width of the map, None when states are no cells.
     table: (n_states, n_actions) int64, the next state; None when transitions are stochastic or unknown.
     outcomes: for stochastic transitions that are known, [state][action] = ((probability, next state), ...).
-    deterministic: whether transitions are known to be. binned: whether states are bins of observations.
+    payoffs: what the environment pays for entering each state, () = unknown or nothing.
+    deterministic: whether transitions are known to be. binned: whether states are bins of observations; then
+    n_states is 0, since observations stay what signals are computed from, and `bins` numbers them.
     terminal: states at which the environment itself ends. max_steps: its step limit; None = no limit.
     signal_names: the signals it computes. state_signals: those that together are the state.
     compute: (names, states) -> columns; states are numbers, or raw observations when n_states is 0.
@@ -53,8 +56,10 @@ class Environment:
     n_columns: int | None = None
     table: npt.NDArray[np.int64] | None = None
     outcomes: Outcomes | None = None
+    payoffs: tuple[float, ...] = ()
     deterministic: bool = False
     binned: bool = False
+    bins: Bins | None = None
     terminal: frozenset[int] = frozenset()
     max_steps: int | None = None
     action_names: tuple[str, ...] = ()
@@ -67,6 +72,11 @@ class Environment:
     def transitions(self) -> tuple[tuple[int, ...], ...] | None:
         """The next state for [state][action], as plain tuples for a fast loop; None without a table."""
         return None if self.table is None else tuple(map(tuple, self.table.tolist()))
+
+    @property
+    def size(self) -> int:
+        """The number of states that have numbers: of bins, where observations are binned."""
+        return self.n_states if self.bins is None else self.bins.size
 
     @cached_property
     def fingerprint(self) -> str | None:
@@ -82,15 +92,26 @@ class Environment:
         return hashlib.sha256(head.encode() + self.table.astype("<i8").tobytes()).hexdigest()
 
     def encode(self, state: Any) -> int:
-        """Return the number of `state`, given as [row, col] or as a number.
+        """Return the number of `state`, given as [row, col] or as a number, or as an observation to be binned.
 
         Raises: DataError D827: the environment has no such state; D828: its states have no numbers.
         """
+        if self.bins is not None:
+            return self._binned(state)
         self._require_numbers()
         number = _number(state, self.n_states, self.n_columns)
         if number is None:
             raise DataError([self._no_such(state, "")])
         return number
+
+    def _binned(self, state: Any) -> int:
+        assert self.bins is not None
+        if type(state) is int and 0 <= state < self.bins.size:
+            return state
+        try:
+            return self.bins.number(state)
+        except (ValueError, TypeError, OverflowError):
+            raise DataError([self._no_such(state, "")]) from None
 
     def encode_all(self, states: Iterable[Any] | npt.NDArray[Any], *, file: str | None = None) -> Any:
         """Return the numbers of `states` as int64, shape (n_samples,).

@@ -133,14 +133,15 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "D869",
-        "transitions that are not known to be deterministic",
+        "an environment that the learner has no table for",
         "error",
         message="'{env}' cannot be learned: {reason}",
         help="{help}",
-        explanation="The tabular learner works on a table of deterministic transitions over discrete states: "
-        "its mask (never take again what once violated) is right only there.",
-        bad="# stlspec learn ... --env FrozenLake-v1\n",
-        good="# stlspec learn ... --env FrozenLake-v1 --env-arg is_slippery=false\n",
+        explanation="The tabular learner has a value for every state and action: states are discrete, or flat "
+        "observations that `--bins` cuts into bins; actions are Discrete. Several goals and hard requirements "
+        "with memory need a table of deterministic transitions.",
+        bad="# stlspec learn ... --env MountainCar-v0\n",
+        good="# stlspec learn ... --env MountainCar-v0 --bins 50,50\n",
         kind="shown",
     ),
     Code(
@@ -222,6 +223,18 @@ CODES: tuple[Code, ...] = (
         "every sample has a stamp of its own, and only data can say which.",
         bad="time s\nsignal d_goal\nsoft reach: eventually[0 s, 5 s] (d_goal < 1)\n",
         good="time 100 ms\nsignal d_goal\nsoft reach: eventually[0 s, 5 s] (d_goal < 1)\n",
+        kind="shown",
+    ),
+    Code(
+        "D879",
+        "a step of an environment without what a signal is read from",
+        "error",
+        message="'{env}' gives nothing to read signal '{signal}' from: {reason}",
+        help='look at one step of it: `from "obs[0]"`, `from "obs.key[1]"`, `from "info.speed"`, `from "action[0]"`',
+        explanation="A signal with `from` is read from the observation, the info or the action of every step, the "
+        "first one included, which has an info of its own.",
+        bad='signal speed from "info.velocity"  # an environment whose info is empty\n',
+        good='signal speed from "obs[1]"\n',
         kind="shown",
     ),
     Code(

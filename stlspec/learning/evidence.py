@@ -77,6 +77,26 @@ def gather(
     return Evidence(reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings), ranked)
 
 
+def gathered(
+    bundle: BundleData, demonstrations: Iterable[Demonstration], reward: RewardMap | None, home: Environment
+) -> Evidence:
+    """Turn demonstrations into a reward map only: where transitions are by chance, no step is known to violate.
+
+    Paper: Algorithm 1. Arguments, result and errors as for `gather`; home: where demonstrations were made.
+    """
+    ranked = ranked_states(bundle, demonstrations, home)
+    warnings: list[Diagnostic] = []
+    if reward is None:
+        reward = reward_of(bundle, ranked, home)
+    elif reward.meaning_sha256 != meaning_sha256(bundle):
+        warnings.append(diagnostic("D865"))
+    if reward.all_zero:
+        reason = "" if ranked else ": there are no demonstrations"
+        warnings.append(diagnostic("D864", reason=reason))
+    bad = sum(demonstration.label == "bad" for demonstration in ranked)
+    return Evidence(reward, False, (), bad, bad, tuple(warnings))
+
+
 def same_table(demonstration: RankedStates, environment: Environment) -> bool:
     """Tell whether a demonstration was made on the very transition table that is learned on.
 

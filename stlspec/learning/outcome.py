@@ -15,6 +15,7 @@ from stlspec.errors import Diagnostic
 from stlspec.learning.farming import Farming
 from stlspec.learning.lessons import NO_LESSONS, Lessons
 from stlspec.learning.policy import Policy
+from stlspec.learning.satisfaction import Satisfaction
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import ENDINGS
 from stlspec.learning.storage import RESULT_SCHEMA
@@ -79,8 +80,10 @@ class Outcome:
     evaluation: all requirements on that path. policy: the greedy policy with its Q table. reward: the map R
     that shaped (or, for the method paper, was) the reward. checks: (episode, env_steps, success) of each
     greedy check. farming: for the method paper, the cycle in which the policy collects reward without
-    arriving; None if it does not. lessons: what each demonstration taught.
-    warnings, notes: what the user should know. files: names of the files in the output directory.
+    arriving; None if it does not. lessons: what each demonstration taught. warnings, notes: what the user should
+    know. files: names of the files in the output directory. satisfaction: where transitions are by chance, how
+    likely the requirements hold; the path is then one run of the policy, success means that the probability is
+    1, and meets_hard that it is not 0 for the hard ones. observations: of that run, where states are bins.
     """
 
     settings: Settings
@@ -100,6 +103,8 @@ class Outcome:
     warnings: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    satisfaction: Satisfaction | None = None
+    observations: tuple[Any, ...] | None = None
 
     @property
     def method(self) -> str:
@@ -113,7 +118,9 @@ class Outcome:
 
     @property
     def path(self) -> tuple[Any, ...]:
-        """The greedy path as files have it: [row, col] on maps, else numbers."""
+        """The greedy path as files have it: [row, col] on maps, observations where they are binned, else numbers."""
+        if self.observations is not None:
+            return self.observations
         return tuple(self.policy.states[s] for s in self.states)
 
     def _repr_svg_(self) -> str | None:
@@ -138,11 +145,8 @@ class Outcome:
                 "actions": list(self.actions),
                 "goal_order": list(self.goal_order),
             },
-            "requirements": {
-                name: {"robustness": number(result.robustness), "verdict": result.verdict.value}
-                for name, result in self.evaluation.items()
-            },
-            "satisfaction_probability": None,
+            "requirements": self._requirements(),
+            "satisfaction_probability": None if self.satisfaction is None else self.satisfaction.to_json(),
             "training": {
                 "episodes": training.episodes,
                 "env_steps": training.env_steps,
@@ -153,6 +157,18 @@ class Outcome:
             },
             **farming,
             "files": dict(self.files),
+        }
+
+    def _requirements(self) -> dict[str, Any]:
+        """Say what each requirement is worth on the path, or under chance how likely it holds: no verdict."""
+        if self.satisfaction is not None:
+            return {
+                name: {"robustness": None, "verdict": None, "probability": number(probability)}
+                for name, probability in self.satisfaction.alone.items()
+            }
+        return {
+            name: {"robustness": number(result.robustness), "verdict": result.verdict.value}
+            for name, result in self.evaluation.items()
         }
 
     def _farming(self) -> dict[str, Any] | None:

@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import Any
 
 from stlspec.documents import DamageError, State, read_document, read_state
+from stlspec.envs.bins import Bins, read_bins
 from stlspec.errors import DataError, diagnostic
 from stlspec.learning.route import Route, Walk, read_route
 from stlspec.learning.shaping import RUNS
@@ -66,6 +67,7 @@ class Policy:
     """A greedy policy: `actions[k]` is the action in `states[k]`, `q[k]` the values it was chosen by.
 
     environment: the description of the environment that it was learned in. A masked action has Q = -inf.
+    bins: what numbers observations that are no states themselves; None = they are states.
     route: what to remember within an episode; None = nothing, and a call of `act` changes nothing. With a
     route, `actions` and `q` are those of its first stage, before anything has happened.
     """
@@ -76,6 +78,7 @@ class Policy:
     actions: tuple[int, ...]
     q: tuple[tuple[float, ...], ...]
     route: Route | None = None
+    bins: Bins | None = None
     _walk: Walk | None = field(init=False, repr=False, compare=False)
     _rows: dict[State, int] = field(init=False, repr=False, compare=False)
 
@@ -112,6 +115,11 @@ class Policy:
         return action
 
     def _row(self, observation: Any) -> int | None:
+        if self.bins is not None:
+            try:
+                return self.bins.number(observation)
+            except (ValueError, TypeError, OverflowError):
+                return None
         if getattr(observation, "ndim", None) == 1:
             observation = observation.tolist()
         try:
@@ -125,7 +133,9 @@ class Policy:
 
     def to_json(self) -> dict[str, Any]:
         """Return the document that `load_policy` reads; the row of a state is its number."""
-        route = {} if self.route is None else {"route": self.route.to_json()}
+        more = {} if self.route is None else {"route": self.route.to_json()}
+        if self.bins is not None:
+            more["bins"] = self.bins.to_json()
         return {
             "schema": SCHEMA,
             "env": dict(self.environment),
@@ -133,7 +143,7 @@ class Policy:
             "states": [list(s) if isinstance(s, tuple) else s for s in self.states],
             "actions": list(self.actions),
             "q": [[v if isfinite(v) else ("inf" if v > 0 else "-inf") for v in row] for row in self.q],
-            **route,
+            **more,
         }
 
 
@@ -172,7 +182,18 @@ def _policy(document: dict[str, Any]) -> Policy:
         tuple(_action(x, n_actions) for x in actions),
         tuple(_values(x, n_actions) for x in q),
         read_route(document["route"], len(named), n_actions) if "route" in document else None,
+        _bins(document["bins"], len(named)) if "bins" in document else None,
     )
+
+
+def _bins(document: Any, n_states: int) -> Bins:
+    try:
+        bins = read_bins(document)
+    except (KeyError, TypeError, ValueError):
+        raise DamageError("'bins' is damaged") from None
+    if bins.size != n_states:
+        raise DamageError("'bins' has another number of states")
+    return bins
 
 
 def _list(document: dict[str, Any], key: str) -> list[Any]:

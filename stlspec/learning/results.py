@@ -23,20 +23,28 @@ from stlspec.learning.task import World
 Writer = Callable[[Path], object]
 
 
-def publish(outcome: Outcome, world: World, environment: Environment, bundle: BundleData, directory: Path) -> Outcome:
+def publish(
+    outcome: Outcome,
+    endings: tuple[int, ...],
+    start: int,
+    environment: Environment,
+    bundle: BundleData,
+    directory: Path,
+) -> Outcome:
     """Write the results of a run into its directory, and name them in the outcome.
 
     Not in the paper: the output of the command.
 
-    Args:    directory: as `storage.claim` returned it.
+    Args:    endings: (n_states,), what each state is drawn as, see `marks`. start: where the path begins.
+             directory: as `storage.claim` returned it.
     Returns: the outcome with `files` filled in, and a warning D877 for each picture that could not be drawn.
     Raises:  UsageError D872: the directory cannot be written.
     """
     scene = plots.Scene(
         title=_title(bundle, f"reward and learned path ({outcome.method})"),
         values=outcome.reward.table(environment),
-        endings=marks(world),
-        start=world.place(world.product.start),
+        endings=endings,
+        start=start,
         path=outcome.states,
         n_columns=environment.n_columns,
     )

@@ -13,6 +13,8 @@ from stlspec.errors import UsageError, diagnostic
 
 Method = Literal["shaped", "paper", "plain"]
 METHODS: tuple[Method, ...] = ("shaped", "paper", "plain")
+Base = Literal["spec", "env"]
+BASES: tuple[Base, ...] = ("spec", "env")
 
 EPISODES_BY_SIDE = ((5, 3000), (7, 5000))
 """On maps: episodes for sides up to this; larger ones get `EPISODES_ON_LARGE_MAPS`."""
@@ -30,7 +32,8 @@ class Settings:
     method: "shaped" (base reward and potential), "plain" (base reward alone, the matched baseline) or "paper"
     (Algorithm 2 to the letter). episodes, max_steps (in one episode): counts, >= 1. gamma: discount, in
     [0, 1]. alpha: learning rate, in (0, 1]. epsilon: share of random actions, in [0, 1]. step_cost: what a
-    step costs, >= 0. mask: never take a pair of state and action again that led to a violation.
+    step costs, >= 0. mask: never take a pair of state and action again that led to a violation. base: whose
+    reward is the base, the spec's (goal, violation, steps) or the environment's own.
     """
 
     method: Method
@@ -42,6 +45,7 @@ class Settings:
     epsilon: float
     step_cost: float
     mask: bool
+    base: Base = "spec"
 
 
 def default_episodes(environment: Environment) -> int:
@@ -63,17 +67,23 @@ def make_settings(
     alpha: float,
     epsilon: float,
     step_cost: float,
-    mask: bool,
+    mask: bool | None,
+    base: str = "spec",
 ) -> Settings:
     """Check the options and fill in what was left out.
 
     Paper: section 4 for gamma 0.99, epsilon 0.4 and alpha 0.1.
 
-    Args:    as the fields of `Settings`; episodes and max_steps may be None. The method "paper" has no mask.
+    Args:    as the fields of `Settings`; episodes, max_steps and mask may be None: a mask is right only where
+             transitions are known to be deterministic. The method "paper" has none.
     Raises:  UsageError D871: an option is out of range.
     """
     if method not in METHODS:
         raise _wrong("method", method, "one of " + ", ".join(METHODS))
+    if base not in BASES:
+        raise _wrong("base", base, "one of " + ", ".join(BASES))
+    if mask is None:
+        mask = environment.deterministic
     if max_steps is None:
         max_steps = environment.max_steps or STEPS_PER_STATE * max(1, environment.n_states)
     settings = Settings(
@@ -86,6 +96,7 @@ def make_settings(
         _number("epsilon", epsilon, 0.0, 1.0),
         _number("step-cost", step_cost, 0.0, 1e6),
         bool(mask) and method != "paper",
+        next(b for b in BASES if b == base),
     )
     if settings.alpha == 0:
         raise _wrong("alpha", alpha, "above 0: with a learning rate of 0 nothing is learned")

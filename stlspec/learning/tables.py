@@ -33,12 +33,7 @@ def deterministic_transitions(environment: Environment) -> tuple[tuple[int, ...]
     """
     transitions = environment.transitions
     reason, way_out = "", "learn in stlspec/GridWorld-v0 or FrozenLake-v1 --env-arg is_slippery=false"
-    if environment.binned or not environment.n_states:
-        reason = "its states are continuous, and learning over bins is not supported yet"
-    elif environment.outcomes is not None:
-        reason = "its transitions are by chance, and the learner takes deterministic ones"
-        way_out = "--env-arg is_slippery=false, if it takes that"
-    elif transitions is None or not environment.deterministic or environment.start is None:
+    if transitions is None or not environment.deterministic or environment.start is None:
         reason = "its transitions are not known"
     elif environment.n_states > MOST_STATES:
         reason = f"it has {environment.n_states} states, and a table holds {MOST_STATES} at most"

@@ -12,16 +12,18 @@ from pathlib import Path
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.demos import Demonstration
+from stlspec.envs.live import with_bins as binned
 from stlspec.envs.model import Environment
 from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import resume, storage
 from stlspec.learning.chains import find_chains
 from stlspec.learning.conclusion import conclude
 from stlspec.learning.evidence import Evidence, gather
+from stlspec.learning.experience import learn_from_experience
 from stlspec.learning.lessons import lessons_of
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.promises import AT_HOME, ELSEWHERE, promised
-from stlspec.learning.results import publish
+from stlspec.learning.results import marks, publish
 from stlspec.learning.segments import Trainer, trainer
 from stlspec.learning.settings import make_settings
 from stlspec.learning.tables import signal_sources
@@ -50,7 +52,9 @@ def learn(
     alpha: float = 0.1,
     epsilon: float = 0.4,
     step_cost: float = 0.01,
-    mask: bool = True,
+    mask: bool | None = None,
+    base: str = "spec",
+    bins: Sequence[int] | None = None,
     jobs: int = 1,
     demo_environment: Environment | None = None,
     out: str | Path | None = None,
@@ -63,17 +67,26 @@ def learn(
     Args:    bundle: the compiled spec. environment: where to learn. demonstrations: good or bad; reward: a
              map inferred before, instead. method: "shaped", "plain" or "paper". episodes, max_steps: None =
              by the environment. seed: same seed, same result. gamma, alpha, epsilon: of Q-learning.
-             step_cost: per step. mask: never repeat what violated. jobs: processes, for segments that can be
+             step_cost: per step. mask: never repeat what violated; None = where transitions are known to be
+             deterministic. base: "spec", or "env" = the environment's own reward. bins: into how many to cut each
+             entry of an observation, where states have no numbers. jobs: processes, for segments that can be
              trained at the same time; the result does not depend on it. demo_environment: where demonstrations
              were made that do not say so. out: directory for the results; an interrupted run resumes.
              progress: called between chunks of episodes.
     Returns: the outcome; `success` says whether the greedy path meets every requirement.
-    Raises:  UsageError: D866 to D872, D876, D878; DataError: a demonstration or the reward cannot be used.
+    Raises:  UsageError: D866 to D872, D876, D878, D879; DataError: a demonstration or the reward cannot be used.
     """
+    environment = with_numbers(environment, bins)
     settings = make_settings(
         environment, method=method, episodes=episodes, seed=seed, max_steps=max_steps, gamma=gamma,
-        alpha=alpha, epsilon=epsilon, step_cost=step_cost, mask=mask,
+        alpha=alpha, epsilon=epsilon, step_cost=step_cost, mask=mask, base=base,
     )  # fmt: skip
+    if environment.bins is not None or environment.outcomes is not None:
+        home = with_numbers(demo_environment, bins) if demo_environment is not None else environment
+        return learn_from_experience(bundle, environment, demonstrations, reward, settings, home, out, progress)
+    if settings.base == "env":
+        allowed = f"spec here: '{environment.id}' is learned on its table of moves, which has no rewards of its own"
+        raise UsageError([diagnostic("D871", option="--base", value=base, allowed=allowed)])
     world = make_world(bundle, environment, settings.max_steps, memory=settings.method != "paper")
     judge = Judge(bundle, environment, world)
     judge.evaluate((world.product.start,))
@@ -93,7 +106,24 @@ def learn(
     outcome = conclude(search, tour, judge, judge.evaluate(tour.path), bundle, environment, evidence)
     lessons = lessons_of(evidence, whole, environment, judge.broken, given=reward is not None)
     outcome = replace(outcome, lessons=lessons)
-    return outcome if directory is None else publish(outcome, world, environment, bundle, directory)
+    if directory is None:
+        return outcome
+    return publish(outcome, marks(world), world.place(world.product.start), environment, bundle, directory)
+
+
+def with_numbers(environment: Environment, bins: Sequence[int] | None) -> Environment:
+    """Number the states of an environment that does not do so itself.
+
+    Paper: section 4, the mountain car in bins.
+
+    Raises:  UsageError D869, D871: there are no bins where there should be, or some where there is nothing to cut.
+    """
+    if environment.n_states == 0 and environment.table is None and environment.bins is None:
+        return binned(environment, bins)
+    if bins is not None and environment.bins is None:
+        allowed = f"left out: '{environment.id}' numbers its states itself"
+        raise UsageError([diagnostic("D871", option="--bins", value=",".join(map(str, bins))[:40], allowed=allowed)])
+    return environment
 
 
 def potential_of(evidence: Evidence, environment: Environment, method: str) -> tuple[float, ...]:
