@@ -136,6 +136,20 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "D882",
+        "a process that ended by itself",
+        "error",
+        message="a process that `{what}` had started ended before its work was done",
+        help='put what the script does under `if __name__ == "__main__":`; if memory ran out, use fewer processes; '
+        "or leave `jobs` out",
+        explanation="With `jobs` above 1 work is done in fresh Python processes. Each of them reads the script that "
+        "started it, so a script that begins its work as it is read would begin it again in each. A process that "
+        "the system ends, for want of memory, looks the same from outside.",
+        bad="# outcome = stlspec.learn(bundle, world, demonstrations, jobs=2)\n",
+        good='# if __name__ == "__main__":\n#     outcome = stlspec.learn(bundle, world, demonstrations, jobs=2)\n',
+        kind="shown",
+    ),
+    Code(
         "X901",
         "a fault of stlspec",
         "error",

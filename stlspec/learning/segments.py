@@ -10,12 +10,14 @@ import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 from threading import Thread
 
+from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import resume, storage
 from stlspec.learning.policy import greedy_path
 from stlspec.learning.qstl import CHUNK, Learner, run_chunk
@@ -180,11 +182,15 @@ def pool_of(jobs: int) -> Iterator[ProcessPoolExecutor]:
     """Offer processes that end with this one, however it ends.
 
     Not in the paper: training in parallel.
+
+    Raises:  UsageError D882: a process ended by itself.
     """
     # a fresh interpreter for each process: a forked one would inherit locks that the progress bar holds
     with ProcessPoolExecutor(jobs, get_context("spawn"), _begin_process, (os.getpid(),)) as pool:
         try:
             yield pool
+        except BrokenProcessPool:
+            raise UsageError([diagnostic("D882", what="learn")]) from None
         except BaseException:
             processes = list((pool._processes or {}).values())
             pool.shutdown(wait=False, cancel_futures=True)

@@ -1,11 +1,13 @@
 """Segments: jobs done by whoever, with the same result."""
 
+import os
 from dataclasses import replace
 
 import pytest
 
+from stlspec.errors import UsageError
 from stlspec.learning.qstl import CHUNK
-from stlspec.learning.segments import Job, shared_mask, train, trainer
+from stlspec.learning.segments import Job, pool_of, shared_mask, train, trainer
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import AVOIDED, GOAL, RUNS, VIOLATION
 from stlspec.learning.task import Task
@@ -65,3 +67,14 @@ def test_several_processes_give_the_same_segments_in_the_same_order():
 def test_what_goes_wrong_in_a_process_reaches_the_caller():
     with pytest.raises(IndexError), trainer(2) as two:
         two([JOB, replace(JOB, potential=(0.5,), settings=replace(SETTINGS, method="shaped"))])
+
+
+def leave():
+    os._exit(7)
+
+
+def test_a_process_that_ends_by_itself_is_a_diagnostic():
+    with pytest.raises(UsageError) as caught, pool_of(1) as pool:
+        pool.submit(leave).result()
+    assert caught.value.diagnostics[0].code == "D882"
+    assert "__main__" in caught.value.diagnostics[0].help
