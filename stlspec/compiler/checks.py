@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from stlspec.compiler.bundle import Param, Signal
 from stlspec.compiler.dependencies import ancestors, dependency_weights, find_cycle, softmax
-from stlspec.compiler.expectations import check_expectations
+from stlspec.compiler.expectations import check_expectations, check_margins
 from stlspec.compiler.inference import MANY_PROBLEMS, Inference
 from stlspec.compiler.model import BROKEN, FORMULA, Binding, Declared, Model, Typing
 from stlspec.compiler.names import declare
@@ -69,6 +69,7 @@ def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tupl
         inference.calls,
         tuple(file.source for file in (syntax, *syntax.used)),
     )
+    check_margins(syntax, model, problems)
     return model, tuple(sorted(dict.fromkeys(problems), key=Diagnostic.sort_key))
 
 

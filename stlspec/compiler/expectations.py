@@ -7,8 +7,10 @@ In: the syntax and what it declares. Out: diagnostics. Whether an expectation is
 import math
 from collections.abc import Iterable, Mapping
 
-from stlspec.compiler.model import Declared
-from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.compiler.extents import Extents
+from stlspec.compiler.model import Declared, Model
+from stlspec.compiler.printing import number_text
+from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.nodes import (
     Column,
     DataFile,
@@ -46,6 +48,22 @@ def check_expectations(syntax: Syntax, declared: Declared, problems: list[Diagno
             case RankExpectation(_, better, worse):
                 _file(syntax.source, better, problems)
                 _file(syntax.source, worse, problems)
+
+
+def check_margins(syntax: Syntax, model: Model, problems: list[Diagnostic]) -> None:
+    """Refuse margins that no trace can give, by the ranges of the signals."""
+    wanted = [s for s in syntax.statements if isinstance(s, VerdictExpectation) and s.margin is not None]
+    if not wanted or any(problem.severity == "error" for problem in problems):
+        return
+    extents = Extents(model)
+    for statement in wanted:
+        assert statement.margin is not None
+        name, verdict = statement.requirement.text, statement.verdict.text
+        low, high = extents.of(model.declared.requirements[name].formula)
+        most = max(0.0, high if verdict == "holds" else -low)
+        if statement.margin.value > most:
+            source, span, shown = syntax.source, statement.margin.span, number_text(most)
+            problems.append(diagnostic("T208", source=source, span=span, name=name, verdict=verdict, most=shown))
 
 
 def signals_of(declared: Declared, formula: Expression) -> tuple[str, ...]:
@@ -112,9 +130,10 @@ def _no_requirement(syntax: Syntax, declared: Declared, name: Name) -> Diagnosti
     if text in declared.places:
         labels = (declared.place(text),)
         way = f"state a requirement about it: `hard {text}_holds: always {text}`"
-    else:
-        way = _meant(text, declared.requirements, way)
-    return diagnostic("N116", source=syntax.source, span=name.span, labels=labels, name=text, help=way)
+    close = closest(text, declared.requirements, 0.5) if text not in declared.places else None
+    edits = (Edit(name.span, close),) if close else ()
+    way = f"did you mean `{close}`?" if close else way
+    return diagnostic("N116", source=syntax.source, span=name.span, labels=labels, edits=edits, name=text, help=way)
 
 
 def _file(source: SourceText, data: DataFile, problems: list[Diagnostic]) -> None:

@@ -237,4 +237,5 @@ def _at_call(problem: Diagnostic, node: Call, source: SourceText, let: LetStatem
         span=span,
         label="",
         labels=labels,
+        fixes=(),  # their edits are places in the body, not here
     )

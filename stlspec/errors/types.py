@@ -81,6 +81,16 @@ CODES: tuple[Code, ...] = (
         good=_D + "hard safe: always (d > sqrt(2))\n",
     ),
     Code(
+        "T208",
+        "a margin that cannot be reached",
+        "error",
+        message="where `{name}` {verdict}, its margin is at most {most}",
+        help="lower the margin, or widen the range of a signal",
+        explanation="Signals stay in their declared ranges, so a requirement cannot be farther from its limit.",
+        bad="signal d in [0, 10]\nhard safe: always (d > 2)\nexpect safe holds on {d: [9]} margin >= 9\n",
+        good="signal d in [0, 10]\nhard safe: always (d > 2)\nexpect safe holds on {d: [9]} margin >= 7\n",
+    ),
+    Code(
         "U301",
         "different units",
         "error",

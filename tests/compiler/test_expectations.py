@@ -93,3 +93,18 @@ def test_suggestions_and_declarations_are_given():
     found = check_source(SourceText.of("s", HEAD + 'expect near holds on "d"')).diagnostics
     (problem,) = [p for p in found if p.code == "N116"]
     assert problem.labels[0].text == "declared here" and "always near" in problem.help
+
+
+@pytest.mark.parametrize(
+    ("statement", "fits"),
+    [
+        ("expect safe holds on {d: [9]} margin >= 8", True),
+        ("expect safe holds on {d: [9]} margin >= 8.1", False),
+        ("expect safe fails on {d: [1]} margin >= 2", True),
+        ("expect safe fails on {d: [1]} margin >= 2.5", False),
+        ("expect late holds on {d: [1]} margin >= 1000", True),
+    ],
+)
+def test_a_margin_that_no_trace_can_give_is_refused(statement, fits):
+    head = "signal d in [0, 10]\nhard safe: always (d > 2)\nhard late: always[3, 4] (d > 2)\n"
+    assert said(statement, head) == ([] if fits else [("T208", statement.split(">= ")[1])])

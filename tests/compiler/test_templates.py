@@ -159,3 +159,8 @@ def test_random_specs_mean_the_same_with_templates_and_written_out():
         short, written = formula(5, [])
         template = "let f(p, q) = p or eventually[0, 2] q\n"
         assert meaning(f"{template}hard a: {short}") == meaning(f"hard a: {written}")
+
+
+def test_a_fix_of_the_body_is_none_at_the_call():
+    (problem,) = problems("let f(k) = always[k, 5] b\nhard a: f(9)")
+    assert problem.code == "I401" and problem.fixes == ()
