@@ -7,7 +7,7 @@ frame and say so; the bar under a name is as long as its weight.
 from collections.abc import Mapping, Sequence
 
 from stlspec.compiler.bundle import BundleData
-from stlspec.markup.elements import Markup, element, number, short
+from stlspec.markup.elements import Markup, element, short
 from stlspec.markup.figures import figure, label
 
 MOST_NODES = 60
@@ -85,7 +85,7 @@ def _node(name: str, strength: str, weight: float, raw: int, place: _Place) -> M
     )  # fmt: skip
     bar = element("rect", x=x + 12, y=y + 49, width=max((_NODE_WIDTH - 24) * weight, 1.0), height=4, class_="stl-bar")
     title = label(x + 12, y + 21, short(name, 24), "stl-name")
-    share = label(x + 12, y + 39, f"{strength} · weight {number(weight)} (raw {raw})", "stl-small")
+    share = label(x + 12, y + 39, f"{strength} · weight {weight:.3f} (raw {raw})", "stl-small")
     return element("g", element("title", f"{strength} {name}"), frame, title, share, bar)
 
 

@@ -121,7 +121,7 @@ def _heat(shown: Mapping[int, float], side: float, right: int) -> list[Markup]:
 
 def _numbers(shown: Mapping[int, float], side: float, right: int) -> list[Markup]:
     return [
-        label(square % right * side + side - 3, square // right * side + 12, f"{value:.2f}", "stl-cell", "end")
+        label(square % right * side + side - 3, square // right * side + 12, f"{value:.2f}", "stl-cell stl-halo", "end")
         for square, value in sorted(shown.items())
     ]
 

@@ -78,13 +78,13 @@ def _contents(view: RewardView) -> list[Markup]:
             element("p", "It is 0 in every state: these demonstrations say nothing about where to go.", class_="lead")
         ]
     if world.map is not None and world.n_columns:
-        board = board_svg(Board(world.map, view.values), "The inferred reward on the map", 620)
+        board = board_svg(Board(world.map, view.values), "The inferred reward on the map", 480)
         words = (
             f"R(s) of {counted(len(view.values), 'state')}, from {number(min(view.values.values()))} to "
             f"{number(max(view.values.values()))}; all others 0. Plain: positive; hatched: negative; dark squares: "
             "obstacles; ring: start; stars: goals."
         )
-        return [element("figure", board, element("figcaption", words))]
+        return [element("figure", board, element("figcaption", words), class_="map")]
     return [_states(view)]
 
 

@@ -14,7 +14,7 @@ from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.compiler.printing import counted
 from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
-from stlspec.markup.elements import Markup, element, join, number, short
+from stlspec.markup.elements import Markup, element, join, short
 from stlspec.markup.graphs import dag_svg
 from stlspec.markup.tables import cell, heading, score_table, table
 from stlspec.pages.demonstration import demonstration_section
@@ -105,7 +105,7 @@ def _requirements(bundle: BundleData, ranking: Ranking) -> Markup:
         [
             element("th", short(r.name), scope="row"),
             cell(r.strength),
-            cell(number(weight), element("small", f" ({raw})"), kind="number"),
+            cell(f"{weight:.3f}", element("small", f" ({raw})"), kind="number"),
             cell(_held(ranking, r.name), kind="number"),
             cell(element("code", short(r.text, 300)), *([element("br"), short(r.doc, 300)] if r.doc else [])),
         ]

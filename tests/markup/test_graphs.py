@@ -45,10 +45,10 @@ def test_weights_are_shown_raw_and_after_softmax() -> None:
     # |Φ| = 4; ancestors: a 0, b 1, c 2, alone 0; softmax of (4, 3, 2, 4) by hand
     shown = {name: n["texts"][1] for name, n in nodes(drawn(SPEC)).items()}
     assert shown == {
-        "a": "hard · weight 0.3995 (raw 4)",
+        "a": "hard · weight 0.399 (raw 4)",
         "b": "soft · weight 0.147 (raw 3)",
-        "c": "soft · weight 0.05406 (raw 2)",
-        "alone": "hard · weight 0.3995 (raw 4)",
+        "c": "soft · weight 0.054 (raw 2)",
+        "alone": "hard · weight 0.399 (raw 4)",
     }
 
 
