@@ -241,7 +241,8 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
     console.print(table)
     drawing = way_on_map(environment, outcome.states)
     if drawing:
-        goals = f" to {' then '.join(outcome.goal_order)}" if outcome.goal_order else ""
+        goals = f" to {', then '.join(outcome.goal_order)}" if outcome.goal_order else ""
+        goals += f" (samples {', '.join(map(str, outcome.stops))})" if len(outcome.stops) > 1 else ""
         console.print(Text(f"\nIts path{goals}, {counted(len(outcome.actions), 'step')}:"))
         console.print(Text("\n".join(drawing)))
     for block in (taught(outcome), _training_lines(outcome)):
@@ -266,8 +267,11 @@ def interval_of(found: Satisfaction) -> str:
 
 def _training_lines(outcome: Outcome) -> list[str]:
     training = outcome.training
+    segments = max(outcome.log.segments, default=1)
+    several = f" over {segments} segments, each trained once" if segments > 1 else ""
     lines = [
-        f"{counted(training.episodes, 'episode')}, {counted(training.env_steps, 'step')}, {training.seconds:.1f} s; "
+        f"{counted(training.episodes, 'episode')}{several}, {counted(training.env_steps, 'step')}, "
+        f"{training.seconds:.1f} s; "
         f"{counted(training.hard_violations, 'hard violation')}, {counted(training.masked, 'step')} masked"
         + (f" ({training.prefilled} of them known from bad demonstrations)" if training.prefilled else "")
     ]

@@ -14,7 +14,7 @@ from stlspec.learning.farming import Farming, describe, find_farming
 from stlspec.learning.outcome import Log, Outcome, Training, meets
 from stlspec.learning.policy import Policy, greedy_action
 from stlspec.learning.route import Route, Stage
-from stlspec.learning.task import SETTLED
+from stlspec.learning.task import SETTLED, World
 from stlspec.learning.tours import CHAIN, Judge, Search, Tour, looks
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
 
@@ -69,6 +69,7 @@ def conclude(
         states=tuple(world.place(state) for state in tour.path),
         actions=tour.actions,
         goal_order=tuple(world.visits[goal].name for goal in tour.goals),
+        stops=stops(world, tour),
         evaluation=evaluation,
         meets_hard=meets(bundle, evaluation, hard_only=True),
         training=_training(search, first_lasting_success(checks) if checks else (0, 0) if success else None),
@@ -80,6 +81,17 @@ def conclude(
         warnings=() if settings.method == "plain" else evidence.warnings,
         notes=remarks,
     )
+
+
+def stops(world: World, tour: Tour) -> tuple[int, ...]:
+    """Return the samples at which a tour reaches its goals, as far as it does. Not in the paper: the account."""
+    found, sample = [], 0
+    for goal in tour.goals:
+        while sample < len(tour.path) and not world.is_goal(tour.path[sample], goal):
+            sample += 1
+        if sample < len(tour.path):
+            found.append(sample)
+    return tuple(found)
 
 
 def _training(search: Search, lasting: tuple[int, int] | None) -> Training:

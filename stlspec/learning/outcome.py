@@ -80,10 +80,11 @@ class Outcome:
     evaluation: all requirements on that path. policy: the greedy policy with its Q table. reward: the map R
     that shaped (or, for the method paper, was) the reward. checks: (episode, env_steps, success) of each
     greedy check. farming: for the method paper, the cycle in which the policy collects reward without
-    arriving; None if it does not. lessons: what each demonstration taught. warnings, notes: what the user should
-    know. files: names of the files in the output directory. satisfaction: where transitions are by chance, how
-    likely the requirements hold; the path is then one run of the policy, success means that the probability is
-    1, and meets_hard that it is not 0 for the hard ones. observations: of that run, where states are bins.
+    arriving; None if it does not. lessons: what each demonstration taught. stops: the samples of the path at
+    which it reaches one goal after the other. warnings, notes: what the user should know. files: names of the
+    files in the output directory. satisfaction: where transitions are by chance, how likely the requirements
+    hold; the path is then one run of the policy, success means that the probability is 1, and meets_hard that
+    it is not 0 for the hard ones. observations: of that run, where states are bins.
     """
 
     settings: Settings
@@ -100,6 +101,7 @@ class Outcome:
     checks: tuple[tuple[int, int, bool], ...]
     farming: Farming | None = None
     lessons: Lessons = NO_LESSONS
+    stops: tuple[int, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

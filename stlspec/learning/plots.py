@@ -17,11 +17,23 @@ from typing import IO, Any
 
 import numpy as np
 
-from stlspec.learning.shaping import GOAL, LIMIT, TERMINAL, VIOLATION
+from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, TERMINAL, VIOLATION
 
 _INK, _MUTED, _PATH, _OBSTACLE = "#1b1f24", "#6b7480", "#e07a1f", "#3a4048"
-_OUTCOME_COLOURS = {GOAL: "#2e8b57", VIOLATION: "#c0392b", LIMIT: "#9aa3ad", TERMINAL: "#7d5ba6"}
-_OUTCOME_NAMES = {GOAL: "goal", VIOLATION: "violation", LIMIT: "step limit", TERMINAL: "terminal state"}
+_OUTCOME_COLOURS = {
+    GOAL: "#2e8b57",
+    LIMIT: "#9aa3ad",
+    TERMINAL: "#7d5ba6",
+    AVOIDED: "#e0a458",
+    VIOLATION: "#c0392b",
+}
+_OUTCOME_NAMES = {
+    GOAL: "goal",
+    VIOLATION: "violation",
+    LIMIT: "step limit",
+    TERMINAL: "terminal state",
+    AVOIDED: "avoided state",
+}
 _ANNOTATED_UP_TO = 12
 _TITLE_POINTS, _TITLE_LINES = 11, 3
 _STRETCHED_FROM = 20
@@ -35,7 +47,8 @@ class Scene:
     """What a picture of the reward shows.
 
     title: shown above. values: (n_states,), R. endings: (n_states,). start: state. path: the greedy path.
-    n_columns: the width of the map; None where states are no cells.
+    n_columns: the width of the map; None where states are no cells. stops: where the path reaches one goal after
+    the other, if there are several. zones: (n_states,), the letter of the zone of each cell, "" = none; () = none.
     """
 
     title: str
@@ -44,6 +57,8 @@ class Scene:
     start: int
     path: tuple[int, ...]
     n_columns: int | None
+    stops: tuple[int, ...] = ()
+    zones: tuple[str, ...] = ()
 
 
 def available() -> bool:
@@ -130,6 +145,7 @@ def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
         for row, column in np.argwhere(obstacles).tolist():
             _draw_obstacle(axes, row, column)
         _draw_grid(axes, n_rows, n_columns)
+        _write_zones(axes, scene.zones, n_columns)
     else:
         _draw_layer(axes, obstacles, aspect)
     rows, columns = np.divmod(np.array(scene.path), n_columns)
@@ -168,6 +184,13 @@ def _write_values(axes: Any, values: Any, limit: float) -> None:
             axes.text(column + 0.45, row + 0.36, f"{value:.2f}", ha="right", va="center", fontsize=6, color=shade)
 
 
+def _write_zones(axes: Any, zones: Sequence[str], n_columns: int) -> None:
+    for state, letter in enumerate(zones):
+        row, column = divmod(state, n_columns)
+        if letter:
+            axes.text(column - 0.42, row - 0.34, letter, ha="left", va="center", fontsize=8, color=_MUTED)
+
+
 def _draw_obstacle(axes: Any, row: int, column: int) -> None:
     from matplotlib.patches import Rectangle
 
@@ -182,6 +205,10 @@ def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
     if goals:
         rows, columns = zip(*goals, strict=True)
         axes.plot(columns, rows, marker="*", markersize=18, color="#f2b705", label="goal", **style)
+    for number, stop in enumerate(scene.stops, 1):
+        row, column = divmod(stop, n_columns)
+        style = {"ha": "center", "va": "center", "fontsize": 7, "fontweight": "bold", "color": _INK, "zorder": 6}
+        axes.text(column, row + 0.02, str(number), **style)
     handles, _ = axes.get_legend_handles_labels()
     handles += _legend_extras(has_path=len(scene.path) > 1)
     style = {"loc": "outside lower center", "ncols": 4, "frameon": False, "fontsize": 8, "labelcolor": _INK}
@@ -238,7 +265,7 @@ def draw_curve(
     top.set_ylim(bottom=0)
     shares = {
         kind: [float(np.mean(np.asarray(endings[g]) == kind)) for g in groups]
-        for kind in (GOAL, LIMIT, TERMINAL, VIOLATION)
+        for kind in _OUTCOME_COLOURS
         if kind in endings
     }
     bottom.stackplot(

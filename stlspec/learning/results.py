@@ -47,6 +47,8 @@ def publish(
         start=start,
         path=outcome.states,
         n_columns=environment.n_columns,
+        stops=tuple(outcome.states[sample] for sample in outcome.stops) if len(outcome.stops) > 1 else (),
+        zones=zones(environment),
     )
     named = {"result": storage.RESULT, "policy": POLICY, "reward": "reward.json", "log": "episodes.csv"}
     named["lessons"] = LESSONS
@@ -65,6 +67,15 @@ def publish(
     writers |= {name: _bytes(data) for name, data in pictures.values()}
     storage.publish(directory, writers)
     return outcome
+
+
+def zones(environment: Environment) -> tuple[str, ...]:
+    """Return the letter of the named region that each cell of a map belongs to, "" = none; () without such a map.
+
+    Not in the paper: pictures.
+    """
+    letters = tuple(cell if "a" <= cell <= "z" else "" for row in environment.map or () for cell in row)
+    return letters if any(letters) and len(letters) == environment.n_states else ()
 
 
 def marks(world: World) -> tuple[int, ...]:

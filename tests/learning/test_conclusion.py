@@ -58,3 +58,15 @@ def test_the_policy_has_a_stage_for_each_goal(tour):
         place = route.transitions[place][tour.policy.act(place)]
         walked.append(place)
     assert tuple(walked) == tour.states
+
+
+def test_the_stops_are_where_the_goals_are_reached(tour, kit):
+    """By hand on 1.S. / ...2: two steps left, then three right and one down, in some order."""
+    assert tour.stops == (2, 6)
+    assert [tour.states[sample] for sample in tour.stops] == [0, 7]
+    lost = learn(
+        api.compile("signal d_obs\nsignal d_goal_1\nhard h: always (d_obs > 0)\nsoft s: eventually (d_goal_1 < 1)"),
+        kit.grid_world(("S#1",)),
+        episodes=25,
+    )
+    assert lost.stops == ()

@@ -8,7 +8,7 @@ import pytest
 
 from stlspec.learning import plots
 from stlspec.learning.plots import Scene, draw_curve, draw_reward, reward_figure, reward_text
-from stlspec.learning.shaping import GOAL, LIMIT, RUNS, TERMINAL, VIOLATION
+from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, TERMINAL, VIOLATION
 
 GRID = Scene("a title", (0.25, 0.0, -0.5, 1.0), (RUNS, VIOLATION, VIOLATION, GOAL), 0, (0, 3), 2)
 ROW = Scene("a title", (0.5, -0.5, 0.0), (RUNS, RUNS, TERMINAL), 0, (0, 1), None)
@@ -32,7 +32,7 @@ def test_a_reward_picture_is_written(tmp_path, scene):
 @pytest.mark.parametrize("success", [None, 1])
 def test_a_curve_is_written_for_any_number_of_episodes(tmp_path, episodes, success):
     pytest.importorskip("matplotlib")
-    endings = [(GOAL, LIMIT, VIOLATION, TERMINAL)[k % 4] for k in range(episodes)]
+    endings = [(GOAL, LIMIT, VIOLATION, TERMINAL, AVOIDED)[k % 5] for k in range(episodes)]
     draw_curve(range(episodes), endings, success, "a title", tmp_path / "c.png")
     assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
 
@@ -100,3 +100,10 @@ def test_the_legend_names_a_learned_path_where_there_is_one(path, named):
     pytest.importorskip("matplotlib")
     (legend,) = reward_figure(replace(GRID, path=path)).legends
     assert ("learned path" in [text.get_text() for text in legend.get_texts()]) == named
+
+
+def test_zones_and_the_order_of_goals_are_written_on_the_map():
+    pytest.importorskip("matplotlib")
+    figure = reward_figure(replace(GRID, stops=(3, 0), zones=("", "w", "", "d")))
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    assert [text for text in texts if text in "wd12"] == ["w", "d", "1", "2"]

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from stlspec.envs.catalogue import make_environment
 from stlspec.learning import learn, load_policy, plots
+from stlspec.learning.results import zones
 from stlspec.rewards import load_reward
 
 
@@ -68,3 +70,9 @@ def test_a_title_with_dollar_signs_costs_no_picture(small, tmp_path):
     outcome = learn(replace(bundle, title="$x_1 costs $5 \\frac{"), world, demos, episodes=30, out=tmp_path / "out")
     assert outcome.warnings == ()
     assert {"reward.png", "curve.png"} <= {p.name for p in (tmp_path / "out").iterdir()}
+
+
+def test_zones_are_the_letters_of_the_map(kit):
+    assert zones(kit.grid_world(("Sa.", "#ab"))) == ("", "a", "", "", "a", "b")
+    assert zones(kit.grid_world(("S.1",))) == ()
+    assert zones(make_environment("MountainCar-v0")) == ()
