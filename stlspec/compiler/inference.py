@@ -63,6 +63,7 @@ class Inference:
     """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
 
     def __init__(self, syntax: Syntax, declared: Declared, silent: frozenset[str], problems: list[Diagnostic]) -> None:
+        self._seen_by: dict[int, frozenset[str]] = {}
         self.enter(syntax)
         self.declared = declared
         self.silent = silent
@@ -77,7 +78,10 @@ class Inference:
         """Go on with expressions of another file: names are those that it sees, places are in its text."""
         self.source = file.source
         self.nameless = file.lost.nameless
-        self._names_seen = file.names.union(*(other.names for other in file.used))
+        seen = self._seen_by.get(id(file))
+        if seen is None:
+            seen = self._seen_by[id(file)] = file.names.union(*(other.names for other in file.used))
+        self._names_seen = seen
 
     def sees(self, name: str) -> bool:
         """Tell whether a name that is in scope is declared in this file or one that it uses."""

@@ -17,6 +17,9 @@ from stlspec.source import SourceText
 Loader = Callable[[str], SourceText]
 """Reads the spec behind a path. Raises InputError: it cannot."""
 
+Parser = Callable[[SourceText, frozenset[str]], Syntax]
+"""Parses one text, given names that are declared elsewhere, as `parse.parse` does."""
+
 MOST_FILES = 100
 MOST_TEXT = 16 * 2**20
 """How many files, and characters in all, a spec may use."""
@@ -40,26 +43,28 @@ def identity(path: str) -> str:
     return os.path.realpath(path)
 
 
-def parse_with_uses(source: SourceText, load: Loader | None) -> Syntax:
+def parse_with_uses(source: SourceText, load: Loader | None, parsed: Parser = parse) -> Syntax:
     """Parse a spec and every file that it uses, directly or through others.
 
     Not in the paper: the language.
 
     Args:    source: the main file. load: reads the others; None: they cannot be read, which is reported.
+             parsed: parses one file, given the names that it sees of others; an editor hands in one that remembers.
     Returns: the syntax of the main file; `uses` holds the files that it names, `used` all of them, each after
              those that it uses itself.
     """
-    syntax = parse(source)
+    syntax = parsed(source, frozenset())
     if not any(isinstance(statement, UseStatement) for statement in syntax.statements):
         return syntax
-    return _Files(load).with_uses(syntax, identity(source.name))
+    return _Files(load, parsed).with_uses(syntax, identity(source.name))
 
 
 class _Files:
     """The files of one spec: those that are parsed, and the `use` statements between the main file and here."""
 
-    def __init__(self, load: Loader | None) -> None:
+    def __init__(self, load: Loader | None, parsed: Parser) -> None:
         self._load = load
+        self._parse = parsed
         self._parsed: dict[str, Syntax] = {}
         self._open: dict[str, Label] = {}
         self._read = 0
@@ -79,7 +84,7 @@ class _Files:
         used = {file.source.name: file for _, direct in uses for file in (*direct.used, direct)}
         names = frozenset[str]().union(*(file.names for file in used.values()))
         if names - syntax.names:
-            syntax = parse(syntax.source, names)
+            syntax = self._parse(syntax.source, names)
         lost = replace(syntax.lost, nameless=True) if failed else syntax.lost
         return replace(
             syntax,
@@ -109,7 +114,10 @@ class _Files:
                 span = statement.path.span
                 problems.append(diagnostic("N111", source=source, span=span, problem=problem, help=way))
                 return None
-            self._parsed[key] = self.with_uses(parse(text), key)
+            syntax = self._parse(text, frozenset())
+            stated = tuple(problem for problem in syntax.diagnostics if problem.code != "S016")
+            # A file that says nothing yet may be used: "state a requirement" would be wrong advice.
+            self._parsed[key] = self.with_uses(replace(syntax, diagnostics=stated), key)
         return self._parsed[key]
 
     def _text(self, path: str) -> SourceText:

@@ -1,11 +1,17 @@
 """Files that use files: found beside each other, read once, parsed with the names that they see."""
 
+import random
+
 import pytest
 
+from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.compiler.checks import check
+from stlspec.compiler.compiling import compile_syntax
 from stlspec.errors import InputError, diagnostic
+from stlspec.lang.parse import parse
 from stlspec.lang.using import MOST_FILES, identity, parse_with_uses, resolve
 from stlspec.source import SourceText
+from tests.lang.mutate import SPECS, statements
 
 
 def loader(files, reads=None):
@@ -156,3 +162,32 @@ def test_paths_are_those_that_can_be_opened(tmp_path):
     (tmp_path / "real" / "a.stl").write_text("signal x")
     found = resolve(str(tmp_path / "spec.stl"), "link/../a.stl")
     assert identity(found) == str(tmp_path / "real" / "a.stl")
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.split()[1])
+def test_how_a_spec_is_split_into_files_does_not_change_its_meaning(spec):
+    rng = random.Random(7)
+    whole = meaning_sha256(compile_syntax(parse_with_uses(SourceText.of("main.stl", spec), None)))
+    for moves_lets in (True, False) * 3:
+        files = {"main.stl": "", "a.stl": "", "b.stl": 'use "a.stl"\n'}
+        for text in statements(spec):
+            name = "main.stl"
+            if text.startswith(("signal", "param")):
+                name = rng.choice(["main.stl", "a.stl", "b.stl"] if not moves_lets else ["a.stl", "b.stl"])
+            elif text.startswith("let") and moves_lets:
+                name = "b.stl"
+            files[name] += text + "\n"
+        files["main.stl"] += 'use "b.stl"\n'
+        assert meaning_sha256(compile_syntax(parsed(files))) == whole
+
+
+def test_a_parser_that_remembers_can_be_handed_in():
+    asked = []
+
+    def remembering(source, names):
+        asked.append((source.name, sorted(names)))
+        return parse(source, names)
+
+    files = {"main.stl": 'use "a.stl"\nhard h: G > 1', "a.stl": "signal G"}
+    parse_with_uses(SourceText.of("main.stl", files["main.stl"]), loader(files), remembering)
+    assert asked == [("main.stl", []), ("a.stl", []), ("main.stl", ["G"])]

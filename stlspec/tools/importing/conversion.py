@@ -67,8 +67,7 @@ def convert(source: SourceText, tool: str | None = None, time: str | None = None
 
 def _refuse_own(source: SourceText) -> None:
     """Refuse a spec of this language."""
-    syntax = parse(source)
-    if not syntax.diagnostics and any(isinstance(s, RequirementStatement) for s in syntax.statements):
+    if any(isinstance(statement, RequirementStatement) for statement in parse(source).statements):
         what, way = "this is a spec of this language already", "check it with `stlspec check`"
         raise SpecError([diagnostic("S043", file=source.name, what=what, help=way)])
 
