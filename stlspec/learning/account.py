@@ -34,7 +34,7 @@ def taught(outcome: Outcome) -> list[str]:
 
 def _effect(lesson: Lesson, lessons: Lessons) -> str:
     if lesson.label == "bad":
-        broken = f"breaks {', '.join(lesson.broken)}" if lesson.broken else "breaks a hard requirement elsewhere"
+        broken = f"breaks {', '.join(lesson.broken)}" if lesson.broken else "breaks a hard requirement"
         steps = [f"{f.action} from {_shown(f.state)}" for f in lesson.forbids[:_MOST_STEPS]]
         more = len(lesson.forbids) - len(steps)
         steps += [f"{more} more"] if more else []

@@ -30,6 +30,7 @@ class Evidence:
     reward: the map R. at_home: whether it was all made on the very map that is learned on. violating: pairs of
     state and action that bad demonstrations showed to violate. bad: how many there are; bad_elsewhere: how many
     of them were made on another transition table. ranked: all demonstrations, as Algorithm 1 sees them.
+    given: whether the reward map was given instead of inferred from them.
     """
 
     reward: RewardMap
@@ -39,6 +40,7 @@ class Evidence:
     bad_elsewhere: int
     warnings: tuple[Diagnostic, ...]
     ranked: tuple[RankedStates, ...] = ()
+    given: bool = False
 
 
 def gather(
@@ -59,7 +61,7 @@ def gather(
     Returns: the evidence, with a warning for a reward that is 0 everywhere or comes from another spec.
     Raises:  DataError: a demonstration cannot be used (see `infer_reward`).
     """
-    ranked = ranked_states(bundle, demonstrations, demo_environment or environment)
+    ranked, given = ranked_states(bundle, demonstrations, demo_environment or environment), reward is not None
     warnings: list[Diagnostic] = []
     at_home = all(same_table(demonstration, environment) for demonstration in ranked)
     if reward is None:
@@ -74,7 +76,9 @@ def gather(
     bad = [demonstration for demonstration in ranked if demonstration.label == "bad"]
     here = [d for d in bad if same_table(d, environment)]
     pairs = {pair for d in here for pair in violating_pairs(task, d.states)}
-    return Evidence(reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings), ranked)
+    return Evidence(
+        reward, at_home, tuple(sorted(pairs)), len(bad), len(bad) - len(here), tuple(warnings), ranked, given
+    )
 
 
 def gathered(
@@ -84,7 +88,7 @@ def gathered(
 
     Paper: Algorithm 1. Arguments, result and errors as for `gather`; home: where demonstrations were made.
     """
-    ranked = ranked_states(bundle, demonstrations, home)
+    ranked, given = ranked_states(bundle, demonstrations, home), reward is not None
     warnings: list[Diagnostic] = []
     if reward is None:
         reward = reward_of(bundle, ranked, home)
@@ -94,7 +98,7 @@ def gathered(
         reason = "" if ranked else ": there are no demonstrations"
         warnings.append(diagnostic("D864", reason=reason))
     bad = sum(demonstration.label == "bad" for demonstration in ranked)
-    return Evidence(reward, False, (), bad, bad, tuple(warnings))
+    return Evidence(reward, False, (), bad, bad, tuple(warnings), ranked, given)
 
 
 def same_table(demonstration: RankedStates, environment: Environment) -> bool:

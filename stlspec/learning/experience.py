@@ -20,6 +20,7 @@ from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import chance, storage
 from stlspec.learning.evidence import Evidence, gathered
 from stlspec.learning.goals import Condition, find_agenda
+from stlspec.learning.lessons import lessons_of
 from stlspec.learning.outcome import Log, Outcome, Training
 from stlspec.learning.policy import Policy, greedy_action
 from stlspec.learning.product import split_hard
@@ -232,6 +233,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         reward=scene.evidence.reward,
         log=Log(tuple(sampler.steps), tuple(sampler.returns), tuple(sampler.outcomes)),
         checks=(),
+        lessons=lessons_of(scene.evidence, environment),
         warnings=() if settings.method == "plain" else scene.evidence.warnings,
         notes=_remarks(satisfaction),
         satisfaction=satisfaction,

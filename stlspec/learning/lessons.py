@@ -126,13 +126,15 @@ Broken = Callable[[Sequence[int]], tuple[str, ...]]
 """Names the hard requirements that a path of the environment's states violates."""
 
 
-def lessons_of(evidence: Evidence, task: Task, environment: Environment, broken: Broken, *, given: bool) -> Lessons:
+def lessons_of(
+    evidence: Evidence, environment: Environment, task: Task | None = None, broken: Broken | None = None
+) -> Lessons:
     """Work out what each demonstration taught.
 
     Paper: Algorithm 1; not in the paper: the mask.
 
-    Args:    evidence: of the run. task: any task of the run. environment: learned in. broken: judges paths.
-             given: whether a reward map was given.
+    Args:    evidence: of the run. environment: learned in. task, broken: any task of the run, and what judges paths;
+             None where transitions are by chance: then no step is forbidden.
     """
     ranked = evidence.ranked
     sums: dict[int, list[float]] = {}
@@ -141,13 +143,12 @@ def lessons_of(evidence: Evidence, task: Task, environment: Environment, broken:
             sums.setdefault(state, []).append(demonstration.rank * value)
     divisor = max((abs(math.fsum(terms)) for terms in sums.values()), default=0.0)
     found = tuple(_lesson(d, task, environment, broken) for d in ranked)
-    return Lessons(found, divisor, given, bool(task.places))
+    return Lessons(found, divisor, evidence.given, task is not None and bool(task.places))
 
 
-def _lesson(demonstration: RankedStates, task: Task, environment: Environment, broken: Broken) -> Lesson:
-    bad, home = demonstration.label == "bad", demonstration.environment
-    here = bad and same_table(demonstration, environment)
-    names = environment.action_names
+def _lesson(demonstration: RankedStates, task: Task | None, environment: Environment, broken: Broken | None) -> Lesson:
+    home = demonstration.environment
+    here = demonstration.label == "bad" and broken is not None and same_table(demonstration, environment)
     last = {state: sample for sample, state in enumerate(demonstration.states)}
     return Lesson(
         demonstration.name,
@@ -155,15 +156,20 @@ def _lesson(demonstration: RankedStates, task: Task, environment: Environment, b
         demonstration.rank,
         len(demonstration.states),
         tuple((_named(home, s), value, last[s]) for s, value in demonstration.values.items()),
-        tuple(
-            Forbidden(
-                _named(environment, place(task, state)),
-                names[action] if action < len(names) else str(action),
-                _named(environment, place(task, task.transitions[state][action])),
-            )
-            for state, action in (sorted(violating_pairs(task, demonstration.states)) if here else ())
-        ),
-        broken(demonstration.states) if here else (),
+        _forbidden(demonstration.states, task, environment) if here and task is not None else (),
+        broken(demonstration.states) if here and broken is not None else (),
+    )
+
+
+def _forbidden(states: Sequence[int], task: Task, environment: Environment) -> tuple[Forbidden, ...]:
+    names = environment.action_names
+    return tuple(
+        Forbidden(
+            _named(environment, place(task, state)),
+            names[action] if action < len(names) else str(action),
+            _named(environment, place(task, task.transitions[state][action])),
+        )
+        for state, action in sorted(violating_pairs(task, states))
     )
 
 

@@ -104,8 +104,7 @@ def learn(
     with trainer(count_processes(jobs), progress and _Counter(search, progress)) as trained:
         tour = search_tours(search, trained, judge)
     outcome = conclude(search, tour, judge, judge.evaluate(tour.path), bundle, environment, evidence)
-    lessons = lessons_of(evidence, whole, environment, judge.broken, given=reward is not None)
-    outcome = replace(outcome, lessons=lessons)
+    outcome = replace(outcome, lessons=lessons_of(evidence, environment, whole, judge.broken))
     if directory is None:
         return outcome
     return publish(outcome, marks(world), world.place(world.product.start), environment, bundle, directory)

@@ -29,7 +29,7 @@ def test_demonstrations_are_told_best_first_with_what_they_taught():
 
 def test_a_demonstration_of_another_map_forbids_nothing_here():
     elsewhere = Lesson("hole", "bad", 1, 3, (), (), ())
-    assert "elsewhere; forbids nothing here" in account(elsewhere)[1]
+    assert "breaks a hard requirement; forbids nothing here" in account(elsewhere)[1]
 
 
 def test_the_method_and_memory_are_mentioned():

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from stlspec import api
+from stlspec.envs.catalogue import make_environment
 from stlspec.errors import DataError
 from stlspec.learning import learn
 from stlspec.learning.lessons import explain, source_of
@@ -98,3 +99,13 @@ def test_a_run_that_is_none_is_refused(run, tmp_path, file, text):
     with pytest.raises(DataError) as caught:
         explain(tmp_path, (0, 0))
     assert caught.value.diagnostics[0].code in ("D873", "D874")
+
+
+def test_where_transitions_are_by_chance_nothing_is_forbidden(kit, tmp_path):
+    world = make_environment("FrozenLake-v1", {"is_slippery": True}, ("SFH", "FFG"))
+    demos = kit.demonstrations([[[0, 0], [1, 0], [1, 1], [1, 2]], [[0, 0], [0, 1], [0, 2]]])
+    learn(kit.grid_bundle(3), world, demos, episodes=50, out=tmp_path / "o")
+    found = explain(tmp_path / "o", (1, 1))
+    assert [lesson.label for lesson, _, _ in found.terms] == ["good"]
+    assert sum(lesson.rank * value for lesson, value, _ in found.terms) / found.divisor == pytest.approx(found.reward)
+    assert explain(tmp_path / "o", (0, 1)).forbidden == ()
