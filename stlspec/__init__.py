@@ -91,7 +91,9 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load the module that a public name lives in."""
+    """Load the module that a public name lives in; `stlspec.gym` is a module itself."""
+    if name == "gym":
+        return import_module("stlspec.gym")
     if name not in _HOME:
         raise AttributeError(f"module 'stlspec' has no attribute {name!r}")
     value = getattr(import_module(_HOME[name]), name)

@@ -328,12 +328,18 @@ def load_reward(path: str | Path) -> RewardMap:
     Raises:  DataError D863: the file is missing, damaged, or of another kind.
     """
     try:
-        return _reward_map(read_document(Path(path), SCHEMA, _LARGEST_FILE))
+        return read_reward(read_document(Path(path), SCHEMA, _LARGEST_FILE))
     except DamageError as error:
         raise DataError([diagnostic("D863", file=str(path), problem=str(error))]) from None
 
 
-def _reward_map(document: dict[str, Any]) -> RewardMap:
+def read_reward(document: Mapping[str, Any]) -> RewardMap:
+    """Read a reward map from its document.
+
+    Not in the paper: a file format.
+
+    Raises:  DamageError: something in it is missing or of the wrong kind.
+    """
     meaning, environment = document.get("meaning_sha256"), document.get("env")
     states, values = document.get("states"), document.get("values")
     if not isinstance(meaning, str) or not isinstance(environment, dict):

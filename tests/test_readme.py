@@ -66,10 +66,19 @@ def test_the_commands_run_in_order(folder: Path) -> None:
 
 
 def test_the_python_example_runs(folder: Path) -> None:
-    (code,) = [body for kind, body in BLOCKS if kind == "python"]
+    code, _ = [body for kind, body in BLOCKS if kind == "python"]
     run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines() == EXPECTED
+
+
+def test_the_wrapper_in_the_python_example_runs(folder: Path) -> None:
+    _, code = [body for kind, body in BLOCKS if kind == "python"]
+    run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    own, robustness, satisfied = run.stdout.split()
+    assert (own, satisfied) == ("-1.0", "False")
+    assert -1.1 < float(robustness) < -0.8  # a car near -0.5, the flag at 0.5
 
 
 def test_the_language_at_a_glance_checks() -> None:

@@ -150,8 +150,9 @@ class Environment:
         return self.compute(tuple(names), self._observations(states, file))
 
     def describe(self) -> dict[str, Any]:
-        """Return the form that demonstration and reward files keep: {"id", "args", "map"}."""
-        return {"id": self.id, "args": dict(self.args), "map": None if self.map is None else list(self.map)}
+        """Return the form that demonstration and reward files keep: {"id", "args", "map"}, with "bins" if it has."""
+        bins = {} if self.bins is None else {"bins": self.bins.to_json()}
+        return {"id": self.id, "args": dict(self.args), "map": None if self.map is None else list(self.map), **bins}
 
     def _require_numbers(self, file: str | None = None) -> None:
         if not self.n_states:
