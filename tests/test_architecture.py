@@ -149,7 +149,10 @@ def test_importing_the_package_loads_nothing_heavy() -> None:
     assert loaded_by("import stlspec") == set()
 
 
-@pytest.mark.parametrize("words", [["check", "specs/example_1.stl"], ["explain", "I401"], ["explain"]])
+@pytest.mark.parametrize(
+    "words",
+    [["check", "specs/example_1.stl"], ["fmt", "--check", "specs/example_1.stl"], ["explain", "I401"], ["explain"]],
+)
 def test_check_and_explain_load_only_what_they_need(words: list[str]) -> None:
     path = [word if not word.startswith("specs") else str(ROOT / word) for word in words]
     heavy = loaded_by(f"from stlspec.cli.main import run\nassert run({path!r}) == 0")

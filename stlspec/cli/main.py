@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 
 from stlspec import __version__
-from stlspec.cli import conformance, data, importing, language, monitoring, recording, testing, training
+from stlspec.cli import conformance, data, formatting, importing, language, monitoring, recording, testing, training
 from stlspec.cli.options import expand_many
 from stlspec.cli.output import error_document, print_diagnostics, print_json
 from stlspec.errors import Diagnostic, StlspecError, UsageError, diagnostic
@@ -44,6 +44,7 @@ def build() -> typer.Typer:
     app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings=names)
     app.callback()(_root)
     app.command("check")(language.check)
+    app.command("fmt")(formatting.fmt)
     app.command("explain")(language.explain)
     app.command("compile")(language.compile_spec)
     app.command("graph")(language.graph)

@@ -161,4 +161,16 @@ CODES: tuple[Code, ...] = (
         good="signal d\nhard safe: always (d > 1)\n",
         kind="shown",
     ),
+    Code(
+        "X902",
+        "a text that cannot be formatted safely",
+        "error",
+        message="the canonical text of this file would not say the same, so the file is left as it is",
+        help="this is a fault of stlspec, not of your file: please report it with the file",
+        explanation="`stlspec fmt` reads what it has made before it writes it. If the syntax tree or a comment "
+        "differed, nothing is written.",
+        bad="# none is known",
+        good="signal d\nhard safe: always (d > 1)\n",
+        kind="shown",
+    ),
 )

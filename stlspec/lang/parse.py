@@ -173,15 +173,19 @@ def _from(tokens: Sequence[Token], problem: Diagnostic) -> Sequence[Token]:
     return [token for token in tokens if span_of(token).start >= start] or tokens[-1:]
 
 
+def tokens_of(source: SourceText) -> tuple[Token, ...]:
+    """Return the tokens of a text, comments left out, as the lexer has them. Not in the paper: for the formatter."""
+    return tuple(token for piece in cut(source, _automaton().lark).statements for token in piece)
+
+
 def parse_formula(
     source: SourceText, names: frozenset[str] = frozenset()
 ) -> tuple[Expression | None, tuple[Diagnostic, ...]]:
     """Parse a text that is one formula, such as the argument of `stlspec eval`."""
-    automaton = _automaton()
-    tokens = tuple(t for piece in cut(source, automaton.lark).statements for t in piece)
+    tokens = tokens_of(source)
     if not tokens:
         return None, (diagnostic("S016", source=source, span=Span(0, 0)),)
-    node, problem, _used = _Feed(automaton, source, tokens, names).run("expression")
+    node, problem, _used = _Feed(_automaton(), source, tokens, names).run("expression")
     return node, (problem,) if problem else ()
 
 
