@@ -89,7 +89,7 @@ class Composer:
             values = ["1", ".5", "inf"] if column in REALS else ["true", "false"]
             samples = [t for _ in range(count) for t in (",", self.rng.choice(values))][1:]
             columns += [",", column, ":", "[", *samples, "]"]
-        clauses = [self.maybe("at", "0"), self.maybe("margin", ">=", "0.5")]
+        clauses = [self.maybe("at", "0"), self.maybe("margin", ">=", "0")]
         self.rng.shuffle(clauses)
         columns = ["{", *columns[1:], "}"]
         return ["expect", name, "fails", "on", *columns, *(token for clause in clauses for token in clause)]
