@@ -20,6 +20,7 @@ from stlspec.lang.nodes import (
     Group,
     Index,
     Infinity,
+    Infix,
     LetStatement,
     Name,
     Number,
@@ -64,6 +65,8 @@ class TemplateInference(Inference):
         self._depths: dict[str, int] = {}
         self._n_nodes = 0
         self._n_nodes_said = False
+        self._templates = frozenset(name for name, let in declared.lets.items() if let.arguments)
+        self._named: set[int] = set()
 
     def template(self, let: LetStatement) -> Typing:
         """Type the body of a template for arguments of any kind, and report what is wrong whatever they are.
@@ -94,6 +97,16 @@ class TemplateInference(Inference):
         """Return the names that may have been meant by one that is not known."""
         return (*self.arguments, *self.scope)
 
+    def _walk(self, root: Expression) -> Typing:
+        if self._templates:
+            calls = [n for n in post_order(root) if isinstance(n, Call) and n.function.text in self._templates]
+            named = [a for call in calls for a in call.arguments if _is_named(a)]
+            self._named.update(id(node) for argument in named for node in post_order(argument))
+        return super()._walk(root)
+
+    def _node(self, node: Expression) -> Typing:
+        return BROKEN if id(node) in self._named else super()._node(node)
+
     def _name(self, node: Name) -> Typing:
         name = node.text
         if name in self.arguments:
@@ -115,6 +128,8 @@ class TemplateInference(Inference):
         if let is None:
             return super()._call(node, below)
         name = let.name.text
+        if any(_is_named(argument) for argument in node.arguments):
+            return self._report("N113", node.span, (self.declared.place(name),), **_usage(let, "arguments by name"))
         if len(below) != len(let.arguments):
             given = f"{len(below)} argument" + ("s" if len(below) != 1 else "")
             return self._report("N113", node.span, (self.declared.place(name),), **_usage(let, given))
@@ -203,6 +218,11 @@ def _repeated(arguments: Sequence[Name]) -> Name | None:
             return argument
         seen.add(argument.text)
     return None
+
+
+def _is_named(argument: Expression) -> bool:
+    """Tell whether an argument is given by its name, as in other languages: `near(r = 2)`."""
+    return isinstance(argument, Infix) and argument.operators[0].word == "assign"
 
 
 def _usage(let: LetStatement, given: str) -> dict[str, str]:

@@ -317,4 +317,15 @@ CODES: tuple[Code, ...] = (
         bad="signal d, e\nhard safe: always (d > 1)\n",
         good="signal d\nsignal e\nhard safe: always (d > e)\n",
     ),
+    Code(
+        "S045",
+        "a path without quotes",
+        "error",
+        message="a path stands in quotes",
+        label='write `"{path}"`',
+        help='write `"{path}"`',
+        explanation="Paths in `use` and `expect` are quoted texts, since they may hold blanks and signs.",
+        bad=_D + _ONE + "expect safe holds on demos/d1.csv\n",
+        good=_D + _ONE + 'expect safe holds on "demos/d1.csv"\n',
+    ),
 )

@@ -5,6 +5,7 @@ Out: one diagnostic. Each habit or slip that can be told from the tokens has a f
 `describe` asks them in a fixed order; the last one only names what was found and what was expected.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -65,6 +66,10 @@ _SIGNS = {
 """Characters that the language does not have, and what is written for them."""
 
 
+_PATH = re.compile(r"(?<![^\s{])[A-Za-z0-9_./~-]+\.[A-Za-z]\w*(?![^\s},])")
+"""What looks like the path of a file."""
+
+
 @dataclass(frozen=True, slots=True)
 class Failure:
     """A statement that cannot be parsed.
@@ -115,6 +120,20 @@ def describe(failure: Failure) -> Diagnostic:
         if found is not None:
             return found
     return _plain(failure)
+
+
+def _bare_path(failure: Failure) -> Diagnostic | None:
+    """`use signals.stl`, `expect a holds on d1.csv`: a path without quotes."""
+    if failure.token is None or failure.tokens[0].type not in ("USE", "EXPECT"):
+        return None
+    at, text = failure.span.start, failure.source.text
+    begin, end = text.rfind("\n", 0, at) + 1, text.find("\n", at)
+    paths = _PATH.finditer(text, begin, end if end >= 0 else len(text))
+    found = next((m for m in paths if m.start() <= at < m.end()), None)
+    if found is None:
+        return None
+    span = Span(found.start(), found.end())
+    return failure.error("S045", at=span, edits=(Edit(span, f'"{found[0]}"'),), path=found[0])
 
 
 def _unreadable(failure: Failure) -> Diagnostic | None:
@@ -256,7 +275,7 @@ def _text(failure: Failure, tokens: Sequence[Token]) -> str:
 def _stray_interval(failure: Failure) -> Diagnostic | None:
     """An interval behind something that takes none: `next[0, 5]`, `d[0, 5]`."""
     token, tokens = failure.token, failure.tokens
-    if token is None:
+    if token is None or tokens[0].type == "EXPECT":
         return None
     if token.type == "LSQB":
         opening = failure.at
@@ -347,6 +366,7 @@ def _plain(failure: Failure) -> Diagnostic:
 
 
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
+    _bare_path,
     _unreadable,
     _late_clause,
     _no_statement,

@@ -77,6 +77,7 @@ def test_params_in_arguments_are_bound_from_outside():
         ("let f(p, q) = p < q\nhard a: f(x)", ("N113", "f(x)")),
         ("let f(p, q) = p < q\nhard a: f(x, r, r)", ("N113", "f(x, r, r)")),
         ("let f(p) = p < r\nhard a: b and f", ("N113", "f")),
+        ("let f(p, q) = p < q\nhard a: f(q = r, p = y + z)", ("N113", "f(q = r, p = y + z)")),
         ("let f(p) = p < r\nhard a: always f[t]", ("N113", "f")),
         ("let f = x < r\nhard a: f(x)", ("N103", "f")),
         ("let f(g) = g(x) > r\nhard a: b", ("N103", "g")),
