@@ -4,16 +4,21 @@ In: a demonstration's scores. Out: a part that can be folded. What decides is ex
 demonstrations only those that are shown cost anything.
 """
 
+from dataclasses import replace
+
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.printing import counted
 from stlspec.markup.elements import Markup, element, join, number, short
 from stlspec.markup.grids import Board, board_svg
 from stlspec.markup.tables import verdict_text
 from stlspec.pictures.contents import picture_of
 from stlspec.pictures.panels import panels
-from stlspec.scores import DemonstrationScore
+from stlspec.scores import DemonstrationScore, RequirementScore
 from stlspec.semantics.explain import Explanation, explain
 
-_MOST_EXPLAINED = 40
+MOST_EXPLAINED = 40
+"""Of more requirements those that fail are explained first, and the rest is counted."""
+
 _MOST_STEPS = 12
 
 
@@ -26,6 +31,8 @@ def demonstration_section(
 
     Args: index: its number, for links. path: its way on the map. unfolded: whether it can be read at once.
     """
+    whole = score
+    score = replace(score, requirements=_chosen(score))
     explanations = {name: explain(bundle, name, found.result) for name, found in score.requirements.items()}
     label = score.label or ("undecided" if score.reward is None and score.rank is None else "")
     head = [element("span", short(score.name), class_="name"), " "]
@@ -35,7 +42,12 @@ def demonstration_section(
         head.append(element("span", f"rank {score.rank}, reward {number(score.reward)}", class_="muted"))
     way = [_map(path)] if path is not None else []
     charts = panels(picture_of(bundle, score, explanations))
-    reasons = [_reason(found) for found in list(explanations.values())[:_MOST_EXPLAINED]]
+    reasons = [_reason(found) for found in explanations.values()]
+    left = len(whole.requirements) - len(explanations)
+    if left:
+        reasons.append(
+            element("p", f"{counted(left, 'requirement')} more; the table has their values.", class_="muted")
+        )
     return element(
         "details",
         element("summary", *head),
@@ -45,6 +57,13 @@ def demonstration_section(
         id=f"d{index}",
         open=unfolded,
     )
+
+
+def _chosen(score: DemonstrationScore) -> dict[str, RequirementScore]:
+    """Return the requirements to explain, in their order: all, or those that fail and the first ones."""
+    names = sorted(score.requirements, key=lambda name: score.requirements[name].result.verdict.value != "violated")
+    kept = set(names[:MOST_EXPLAINED])
+    return {name: found for name, found in score.requirements.items() if name in kept}
 
 
 def _map(path: Board) -> Markup:

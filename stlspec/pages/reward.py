@@ -46,6 +46,8 @@ def reward_view(
     if ranking.at is not None or any(d.label is None for d in ranking.demonstrations):
         return RewardView("It is inferred from whole demonstrations whose labels are all decided.")
     try:
+        # Most often all demonstrations lack states, or none does; so the first one tells at once.
+        ranked_states(bundle, demonstrations[:1], environment)
         ranked = ranked_states(bundle, demonstrations, environment)
         reward = reward_of(bundle, ranked, environment)
     except InputError as error:

@@ -17,13 +17,16 @@ from stlspec.envs.model import Environment
 from stlspec.markup.elements import Markup, element, join, short
 from stlspec.markup.graphs import dag_svg
 from stlspec.markup.tables import cell, heading, score_table, table
-from stlspec.pages.demonstration import demonstration_section
+from stlspec.pages.demonstration import MOST_EXPLAINED, demonstration_section
 from stlspec.pages.frame import document
 from stlspec.pages.reward import RewardView, reward_section, reward_view
 from stlspec.scores import Ranking
 
 MOST_BYTES = 12_000_000
 """Pictures of demonstrations take no more than this, and the last one begun."""
+
+MOST_REASONS = 2000
+"""So many values are explained, some 5 ms each."""
 
 MOST_PICTURED, MOST_ROWS, MOST_CELLS = 100, 2000, 60_000
 _UNFOLDED_UP_TO = 4
@@ -149,7 +152,8 @@ def _ranking(ranking: Ranking, order: Sequence[int], linked: set[int]) -> Markup
 
 def _sections(bundle: BundleData, ranking: Ranking, order: Sequence[int], view: RewardView) -> list[tuple[int, Markup]]:
     """Write the parts on demonstrations, worst and best by turns until there are enough; return them best first."""
-    chosen = ends_of(order, MOST_PICTURED)
+    each = max(min(len(ranking.requirements), MOST_EXPLAINED), 1)
+    chosen = ends_of(order, min(MOST_PICTURED, MOST_REASONS // each))
     half = (len(chosen) + 1) // 2
     turns = chain.from_iterable(zip_longest(reversed(chosen[half:]), chosen[:half]))
     found: dict[int, Markup] = {}
