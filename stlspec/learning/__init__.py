@@ -1,12 +1,12 @@
 """Policies from inferred rewards: Algorithms 2 and 3 of the paper, over tables of deterministic moves.
 
 The data flows one way through the modules:
-goals and orders (what the spec wants visited) and memory and product (what its hard requirements remember), over
-tables of conditions, make a task; settings -> evidence (demonstrations as a reward map and first entries of the
-mask) -> shaping (what a step pays) and promises (the potential) -> qstl (training) -> segments (from a state to a
-goal, kept by resume) -> tours and chains (through several goals) -> conclusion -> outcome, with policy and route,
-lessons and farming -> results, plots, account, storage (the directory of a run). `training.learn` is the whole line,
-`many.learn_many` many of them at once.
+goals and orders (what the spec wants visited) and memory and product (what its hard requirements remember),
+over tables of conditions, make a task; settings -> evidence (demonstrations as a reward map and first entries
+of the mask) -> shaping (what a step pays) and promises (the potential) -> qstl (training) -> segments (from a
+state to a goal, shaped by guidance, kept by resume) -> tours and chains (through several goals) -> conclusion
+-> outcome, with policy and route, lessons and farming -> results, plots, account, storage (the directory of a
+run). `training.learn` is the whole line, `many.learn_many` many of them at once.
 """
 
 from stlspec.learning.many import learn_many

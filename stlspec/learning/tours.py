@@ -82,7 +82,11 @@ class Tour:
 
 @dataclass
 class Search:
-    """The segments trained so far, in the order of training, with the tours they make."""
+    """The segments trained so far, in the order of training, with the tours they make.
+
+    potential: (n_states,) of the environment, of a run with one goal. guide: the potential of a segment, by the state
+    of the environment it starts from and the states of its goal; None = `potential` for all, as in Algorithm 3.
+    """
 
     world: World
     settings: Settings
@@ -90,6 +94,7 @@ class Search:
     forbidden: set[tuple[int, int]]
     fingerprint: Callable[[Task, Settings, Sequence[float], Sequence[tuple[int, int]]], str]
     directory: Path | None
+    guide: Callable[[int, Sequence[bool]], tuple[float, ...]] | None = None
     segments: dict[Key, Segment] = field(default_factory=dict)
     tasks: dict[Key, Task] = field(default_factory=dict)
     candidates: list[Tour] = field(default_factory=list)
@@ -100,7 +105,10 @@ class Search:
         alone = len(self.world.visits) == 1 and not self.segments and start == self.world.product.start
         stream = () if alone else (1 + start, 1 + goal, len(watches))
         task = self.tasks[key] = segment(self.world, start, goal, watches, stream)
-        potential, forbidden = lifted(task, self.potential), tuple(sorted(self.forbidden))
+        guided = self.potential
+        if self.guide is not None and goal != SETTLED and len(self.world.visits) > 1:
+            guided = self.guide(self.world.place(start), self.world.visits[goal].holds)
+        potential, forbidden = lifted(task, guided), tuple(sorted(self.forbidden))
         name = self.fingerprint(task, self.settings, potential, forbidden)
         return Job(task, self.settings, potential, forbidden, self.directory, name)
 
@@ -116,7 +124,7 @@ class Search:
 def find_tours(search: Search, trainer: Trainer, *, watched: bool) -> None:
     """Train what all orders of the goals need, and collect the tours.
 
-    Paper: Algorithm 3, lines 1 to 8.
+    Paper: Algorithm 3, lines 1 to 8; what shapes a segment is said in `guidance`.
 
     Args:    search: grows. trainer: trains segments. watched: whether segments keep up what soft requirements
              ask for; one that does not arrive that way is trained once more without.

@@ -20,6 +20,7 @@ from stlspec.learning.chains import find_chains
 from stlspec.learning.conclusion import conclude
 from stlspec.learning.evidence import Evidence, gather
 from stlspec.learning.experience import learn_from_experience
+from stlspec.learning.guidance import segment_reward, ways_of
 from stlspec.learning.lessons import lessons_of
 from stlspec.learning.outcome import Outcome
 from stlspec.learning.promises import AT_HOME, ELSEWHERE, promised
@@ -100,6 +101,7 @@ def learn(
         set(evidence.violating) if settings.mask else set(),
         partial(resume.fingerprint, bundle, environment),
         directory,
+        guide_of(evidence, environment, settings.method),
     )
     with trainer(count_processes(jobs), progress and _Counter(search, progress)) as trained:
         tour = search_tours(search, trained, judge)
@@ -134,6 +136,19 @@ def potential_of(evidence: Evidence, environment: Environment, method: str) -> t
     """
     reward = evidence.reward.table(environment)
     return reward if method == "paper" else promised(reward, AT_HOME if evidence.at_home else ELSEWHERE)
+
+
+def guide_of(
+    evidence: Evidence, environment: Environment, method: str
+) -> Callable[[int, Sequence[bool]], tuple[float, ...]] | None:
+    """Return what makes the potential of a segment, see `guidance`; None for the method paper or a given map.
+
+    Paper: Algorithm 3 has one R for all. Returns: a function of the start and the goal of a segment.
+    """
+    if method == "paper" or evidence.given:
+        return None
+    ways, least = ways_of(evidence.ranked, environment), AT_HOME if evidence.at_home else ELSEWHERE
+    return lambda start, goal: promised(segment_reward(ways, start, goal), least)
 
 
 class _Counter:
