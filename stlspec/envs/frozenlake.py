@@ -105,7 +105,11 @@ def _outcomes(table: Mapping[int, Mapping[int, Sequence[tuple[float, int, float,
 
 def _payoffs(table: Mapping[int, Mapping[int, Sequence[tuple[float, int, float, bool]]]]) -> tuple[float, ...]:
     """Return what entering each cell pays; a cell that cannot be entered pays nothing."""
-    found = {int(t): float(r) for row in table.values() for branches in row.values() for _, t, r, _ in branches}
+    found: dict[int, float] = {}
+    for state, row in table.items():
+        for branches in row.values():
+            # a hole and the goal lead to themselves for nothing: that is no entering
+            found |= {int(after): float(paid) for _, after, paid, _ in branches if after != state}
     return tuple(found.get(state, 0.0) for state in range(len(table)))
 
 

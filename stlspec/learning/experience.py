@@ -220,7 +220,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
     )
     return Outcome(
         settings=settings,
-        success=satisfaction.value == 1.0,
+        success=satisfaction.value == 1.0,  # the same where moves are certain: the one run meets all or not
         states=shown.states,
         actions=shown.actions,
         goal_order=(scene.runner.goal_name,),
@@ -235,8 +235,8 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         checks=(),
         lessons=lessons_of(scene.evidence, environment),
         warnings=() if settings.method == "plain" else scene.evidence.warnings,
-        notes=_remarks(satisfaction),
-        satisfaction=satisfaction,
+        notes=() if environment.deterministic else _remarks(satisfaction),
+        satisfaction=None if environment.deterministic else satisfaction,
         observations=shown.observations,
     )
 

@@ -77,7 +77,7 @@ def learn(
     Returns: the outcome; `success` says whether the greedy path meets every requirement.
     Raises:  UsageError: D866 to D872, D876, D878, D879; DataError: a demonstration or the reward cannot be used.
     """
-    environment = with_numbers(environment, bins)
+    environment = with_rewards(with_numbers(environment, bins), base)
     settings = make_settings(
         environment, method=method, episodes=episodes, seed=seed, max_steps=max_steps, gamma=gamma,
         alpha=alpha, epsilon=epsilon, step_cost=step_cost, mask=mask, base=base,
@@ -85,9 +85,6 @@ def learn(
     if environment.bins is not None or environment.outcomes is not None:
         home = with_numbers(demo_environment, bins) if demo_environment is not None else environment
         return learn_from_experience(bundle, environment, demonstrations, reward, settings, home, out, progress)
-    if settings.base == "env":
-        allowed = f"spec here: '{environment.id}' is learned on its table of moves, which has no rewards of its own"
-        raise UsageError([diagnostic("D871", option="--base", value=base, allowed=allowed)])
     world = make_world(bundle, environment, settings.max_steps, memory=settings.method != "paper")
     judge = Judge(bundle, environment, world)
     judge.evaluate((world.product.start,))
@@ -125,6 +122,21 @@ def with_numbers(environment: Environment, bins: Sequence[int] | None) -> Enviro
         allowed = f"left out: '{environment.id}' numbers its states itself"
         raise UsageError([diagnostic("D871", option="--bins", value=",".join(map(str, bins))[:40], allowed=allowed)])
     return environment
+
+
+def with_rewards(environment: Environment, base: str) -> Environment:
+    """Let an environment with a table of moves be sampled where its own reward is the base.
+
+    Not in the paper: decision 7. The loop over a table of moves knows the spec's reward only.
+
+    Raises:  UsageError D871: it pays for nothing.
+    """
+    if base != "env" or environment.transitions is None:
+        return environment
+    if not any(environment.payoffs):
+        allowed = f"spec here: '{environment.id}' has no reward of its own"
+        raise UsageError([diagnostic("D871", option="--base", value=base, allowed=allowed)])
+    return replace(environment, outcomes=tuple(tuple(((1.0, s),) for s in row) for row in environment.transitions))
 
 
 def potential_of(evidence: Evidence, environment: Environment, method: str) -> tuple[float, ...]:

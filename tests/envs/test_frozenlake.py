@@ -97,3 +97,9 @@ def test_a_misspelt_argument_is_recognised():
 def test_a_map_too_large_for_gymnasiums_table_is_refused():
     with pytest.raises(DataError, match=r"D826.*10,001 cells"):
         environment({}, ["S" + "F" * 10_000])
+
+
+def test_entering_the_goal_pays_what_the_environment_says():
+    lake = environment({"reward_schedule": [2, -1, 0]}, ["SF", "HG"])
+    assert lake.payoffs == (0.0, 0.0, -1.0, 2.0)
+    assert environment({"is_slippery": False}, ["SF", "HG"]).payoffs == (0.0, 0.0, 0.0, 1.0)

@@ -134,3 +134,16 @@ def test_states_of_a_table_are_settled_by_the_spec(kit):
 def test_bins_are_for_observations_without_numbers(kit):
     with pytest.raises(UsageError, match="--bins"):
         learn(kit.grid_bundle(9), make_environment("FrozenLake-v1"), bins=(5,))
+
+
+def test_a_certain_table_with_its_own_reward_has_verdicts(kit):
+    """The lake pays 1 at the goal and nothing else: with gamma < 1 the shortest way is the best."""
+    rows = ("SFF", "FHF", "FFG")
+    outcome = learn(kit.grid_bundle(4), kit.frozen_lake(rows), method="plain", base="env", episodes=400)
+    assert outcome.success
+    assert outcome.satisfaction is None
+    assert len(outcome.actions) == 4
+    assert set(outcome.log.returns) <= {0.0, 1.0, -1.0}
+    assert outcome.to_json()["requirements"]["fast"]["verdict"] == "satisfied"
+    with pytest.raises(UsageError, match="no reward of its own"):
+        learn(kit.grid_bundle(4), kit.grid_world(("S.G",)), method="plain", base="env")

@@ -26,7 +26,7 @@ COPIES, EPISODES = 8, 100
 
 
 def plain():
-    return gymnasium.make(ENV, continuing_task=False)
+    return gymnasium.make(ENV)
 
 
 def with_spec():
