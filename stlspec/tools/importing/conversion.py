@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from stlspec.compiler.checks import check
 from stlspec.errors import Diagnostic, SpecError, UsageError, diagnostic
+from stlspec.lang.formatting.text import format_text
 from stlspec.lang.nodes import LetStatement, ParamStatement, RequirementStatement, SignalStatement, Statement
 from stlspec.lang.parse import Syntax, parse
 from stlspec.source import SourceText
@@ -62,7 +63,7 @@ def convert(source: SourceText, tool: str | None = None, time: str | None = None
     syntax = _syntax(source, statements)
     refuse_broken([*draft.problems, *check(syntax)[1]])
     warnings = tuple(sorted(draft.problems, key=Diagnostic.sort_key))
-    return Conversion(tool, spec_text(statements, draft.comments), syntax, warnings)
+    return Conversion(tool, format_text(spec_text(statements, draft.comments)), syntax, warnings)
 
 
 def _refuse_own(source: SourceText) -> None:

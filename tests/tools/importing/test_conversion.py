@@ -7,6 +7,7 @@ import pytest
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.compiler.compiling import check_source, compile_source, compile_syntax
 from stlspec.errors import SpecError, StlspecError, UsageError
+from stlspec.lang.formatting.text import format_text
 from stlspec.source import SourceText
 from stlspec.tools.importing.conversion import convert
 
@@ -28,6 +29,7 @@ def test_the_tool_is_told_by_the_text_and_the_meaning_is_kept(text, tool):
     found = convert(SourceText.of("f", text))
     assert found.tool == tool
     assert check_source(SourceText.of("out.stl", found.text)).errors == ()
+    assert format_text(found.text) == found.text
     written = compile_source(SourceText.of("out.stl", found.text))
     assert meaning_sha256(written) == meaning_sha256(compile_syntax(found.syntax))
 

@@ -23,8 +23,8 @@ def formula_of(text):
     [
         ("always[0:5](x >= 3)", "always[0, 5] (x >= 3)"),
         ("always[0,5] x >= 3", "always[0, 5] (x >= 3)"),
-        ("G[0:5](x >= 3) & F (y < 1)", "always[0, 5] (x >= 3) and eventually (y < 1)"),
-        ("always x > 1 until y > 2", "always (x > 1) until (y > 2)"),
+        ("G[0:5](x >= 3) & F (y < 1)", "(always[0, 5] (x >= 3)) and (eventually (y < 1))"),
+        ("always x > 1 until y > 2", "(always (x > 1)) until (y > 2)"),
         ("x > 1 implies y > 1 implies z > 1", "((x > 1) implies (y > 1)) implies (z > 1)"),
         ("x > 1 -> y > 1", "(x > 1) implies (y > 1)"),
         ("a - b + c > 0", "a - (b + c) > 0"),
@@ -55,7 +55,7 @@ def test_bounds_have_units_and_constants_become_params():
     text = "const float T = 5\nconst float c = 3\nfloat x\nout = always[0:T](x > c) and eventually[0:500 ms](x > 0)"
     assert text_of(text) == (
         "time 1 s\n\nparam T = 5 s\nparam c = 3\n\nsignal x\n\nhard out:\n"
-        "    always[0, T] (x > c) and eventually[0, 500 ms] (x > 0)\n"
+        "    (always[0, T] (x > c)) and (eventually[0, 500 ms] (x > 0))\n"
     )
     both = text_of("const float T = 5\nout = always[0:T](x > T)", "s")
     assert "param T = 5\n" in both and "always[0, T * 1 s] (x > T)" in both
