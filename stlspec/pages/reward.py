@@ -53,6 +53,9 @@ def reward_view(
     except InputError as error:
         found = error.diagnostics[0]
         return RewardView(f"None could be inferred: {found.message}.")
+    if any((d.label, d.rank) != (r.label, r.rank) for d, r in zip(ranking.demonstrations, ranked, strict=True)):
+        # The ranking was made of other samples, such as those left after `--on-nan drop`.
+        return RewardView("The scores are not those of the samples as recorded, to which the states belong.")
     home = ranked[0].environment
     table_of = reward.table(home)
     paths = {

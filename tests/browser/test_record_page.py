@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -88,6 +89,19 @@ def test_a_sitting_with_the_mouse(record: Any, visit: Callable[..., Any], tmp_pa
     page.get_by_text("The recording is over").wait_for()
     out, _ = process.communicate(timeout=10)
     assert (process.returncode, out.startswith("saved 1 demonstration")) == (0, True)
+
+
+def test_ctrl_c_in_the_terminal_is_told_on_the_page(record: Any, visit: Callable[..., Any], tmp_path: Path) -> None:
+    process, url = record(*GRID)
+    page = visit(url)
+    steps(page, 0)
+    page.keyboard.press("ArrowUp")
+    steps(page, 1)
+    process.send_signal(signal.SIGINT)
+    page.get_by_text("The unfinished one was saved too.").wait_for()
+    assert process.wait(10) == 130
+    (saved,) = load_demonstrations([tmp_path / "out.jsonl"])
+    assert saved.n_samples == 2
 
 
 def test_a_sitting_with_the_keyboard_alone(record: Any, visit: Callable[..., Any], tmp_path: Path) -> None:

@@ -39,3 +39,12 @@ def test_states_without_a_map_are_a_table_and_a_reward_of_zero_says_so() -> None
     world = make_environment("FrozenLake-v1", {"is_slippery": False})
     view = view_of([make_demonstration("d", states=[0, 1], env=world.describe())])
     assert "0 in every state" in reward_section(view)
+
+
+def test_a_ranking_of_other_samples_gets_no_reward_of_these() -> None:
+    bundle = stlspec.compile(SPEC)
+    made, other = (
+        make_demonstration("d", states=states, env=WORLD) for states in ([[0, 0], [0, 1], [0, 2]], [[0, 0], [1, 2]])
+    )
+    assert reward_view(bundle, stlspec.score(bundle, [made]), [made], None).values
+    assert "as recorded" in reward_view(bundle, stlspec.score(bundle, [other]), [made], None).reason

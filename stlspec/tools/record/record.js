@@ -228,7 +228,7 @@ async function begin() {
     try { const before = view; view = { ...(await get("view")), refused: "", said: "Changed in another tab." }; show(before); } catch { ended(); }
   };
   source.addEventListener("end", ended);
-  source.onerror = () => { if (source.readyState === EventSource.CLOSED) ended(); };
+  source.onerror = () => { if (!over) get("view").catch(ended); };
   $("board").focus();
 }
 $("board").addEventListener("keydown", key);

@@ -116,8 +116,7 @@ def _serving(server: PageServer) -> Iterator[None]:
     try:
         yield
     finally:
-        server.closing = True
-        server.tell()
+        server.farewell()
         server.shutdown()
         thread.join()
         server.server_close()

@@ -21,6 +21,7 @@ from stlspec.tools.record.frames import png
 _LARGEST_REQUEST = 64 * 1024
 _MOST_STREAMS = 16
 _HEARTBEAT = 2.0
+_FAREWELL = 1.0
 PATIENCE = 15.0
 """So many seconds after the last page was closed nobody is expected back; a reload takes one or two."""
 _ASSETS = {
@@ -98,11 +99,19 @@ class PageServer(ThreadingHTTPServer):
             self._streams -= 1
             if not self._streams:
                 self._left = time.monotonic()
+                self.changed.notify_all()
 
     def tell(self) -> None:
         """Wake the streams: there is a new revision, or the end."""
         with self.changed:
             self.changed.notify_all()
+
+    def farewell(self) -> None:
+        """Tell all pages that it is over, and give them a moment to hear it."""
+        with self.changed:
+            self.closing = True
+            self.changed.notify_all()
+            self.changed.wait_for(lambda: not self._streams, timeout=_FAREWELL)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Stay silent when a browser hangs up."""
@@ -215,7 +224,8 @@ class _Handler(BaseHTTPRequestHandler):
                 self.wfile.write(f"data: {server.sitting.revision}\n\n".encode())
                 self.wfile.flush()
                 with server.changed:
-                    server.changed.wait(_HEARTBEAT)
+                    if not server.closing:
+                        server.changed.wait(_HEARTBEAT)
             self.wfile.write(b"event: end\ndata: end\n\n")
         except OSError:
             return  # The page was closed.

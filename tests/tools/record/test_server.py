@@ -51,8 +51,7 @@ class Served:
             thread.start()
 
     def close(self) -> None:
-        self.server.closing = True
-        self.server.tell()
+        self.server.farewell()
         self.desk.close()
         self.server.shutdown()
         for thread in self.threads:
@@ -209,8 +208,7 @@ def test_the_stream_tells_revisions_at_once_and_the_end(served: Served) -> None:
         read_until(link, b"data: 1\n\n")
         assert time.monotonic() - start < 1.5
         assert not served.server.deserted()
-        served.server.closing = True
-        served.server.tell()
+        served.server.farewell()
         read_until(link, b"event: end")
 
 
