@@ -61,6 +61,8 @@ def conclude(
     policy = make_policy(search, tour, environment)
     farming = _farming(search, tour) if settings.method == "paper" else None
     remarks = notes(evidence, settings.method, settings.mask)
+    if world.product.violating[world.product.start]:
+        remarks = (*remarks, "the start itself violates a hard requirement, so no policy can meet it")
     if settings.method == "paper":
         remarks = (*remarks, describe(farming, policy.states))
     return Outcome(

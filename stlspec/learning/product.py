@@ -7,7 +7,7 @@ environment; together they are explored from the start, so that only states that
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NoReturn
 
 from stlspec.compiler.bundle import BundleData, Requirement
@@ -141,8 +141,8 @@ def make_product(
 
     Not in the paper: decision 13, hard requirements that are not Markov in the environment's state.
 
-    Args:    transitions: of the environment, deterministic. longest: steps of the longest run; a time beyond it
-             is not told apart. earliest: a number of samples that must be told apart in any case, for goals
+    Args:    transitions: of the environment, deterministic. longest: steps of the longest run; what lies further
+             apart is not told apart. earliest: a number of samples that must be told apart in any case, for goals
              that do not count before.
     Returns: the product; the environment itself, state for state, where nothing is remembered.
     Raises:  UsageError D868: a hard requirement cannot be watched; D878: there are too many states.
@@ -156,18 +156,21 @@ def make_product(
     if not split.remembering and not earliest:
         rows = tuple(map(tuple, transitions))
         return Product((), environment.start, rows, tuple(forbidden), (), (), robustness, tuple(forbidden))
-    machine = _machine(bundle, split.remembering)
+    machine = _machine(bundle, split.remembering, longest)
     letters = _Letters(bundle, environment, transitions, machine, split.remembering, longest, earliest)
     return _Explorer(environment, transitions, forbidden, machine, letters).explore(robustness)
 
 
-def _machine(bundle: BundleData, requirements: Sequence[Requirement]) -> Machine:
+def _machine(bundle: BundleData, requirements: Sequence[Requirement], longest: int) -> Machine:
+    """Make the machine of requirements; a window that no run outlasts has no end, so that nothing counts up to it."""
     for requirement in requirements:
         try:
             make_machine(bundle.nodes, [requirement.root], bundle.time)
         except FutureInPastError:
             _refuse(requirement, "a past operator stands over `always`, `eventually`, `until` or `next`")
-    return make_machine(bundle.nodes, [r.root for r in requirements], bundle.time)
+    machine = make_machine(bundle.nodes, [r.root for r in requirements], bundle.time)
+    windows = {i: (low, None if high is None or high > longest else high) for i, (low, high) in machine.windows.items()}
+    return replace(machine, windows=windows)
 
 
 def _refuse(requirement: Requirement, reason: str) -> NoReturn:

@@ -115,6 +115,13 @@ def test_a_clock_runs_as_far_as_it_matters():
     assert found.clock[found.transitions[found.start][1]] == 1
 
 
+def test_what_no_run_outlasts_is_not_counted():
+    for formula in ("always (in_a implies eventually[0, 100000] in_b)", "always (once[0, 100000] in_a or not in_b)"):
+        assert product_of(formula).n_states < 40
+    assert product_of("always[0, 1000000] (d_obs >= 1)").n_states == 12
+    assert product_of("always[0, 40] (d_obs >= 1)").n_states > 300
+
+
 def test_terminal_states_lead_nowhere():
     lake = make_environment("FrozenLake-v1", {"is_slippery": False}, ("SFF", "FHF", "FFG"))
     text = "signal d_obs\nsignal row\nhard h: always (prev (row > 0) implies row > 0)"
@@ -142,7 +149,7 @@ def test_what_has_no_bound_is_refused_with_the_reason(formula, reason):
 def test_too_many_states_are_refused_with_the_number(monkeypatch):
     monkeypatch.setattr(product, "MOST_STATES", 200)
     with pytest.raises(UsageError) as caught:
-        product_of("always (once[0, 1000] in_a implies not in_b)")
+        product_of("always (once[0, 1000] in_a implies not in_b)", longest=5000)
     (found,) = caught.value.diagnostics
     assert found.code == "D878"
     assert "12 states" in found.message and "200" in found.message

@@ -166,6 +166,7 @@ def test_a_start_that_violates_is_no_success(kit):
     assert not outcome.meets_hard
     assert outcome.training.env_steps == 0
     assert outcome.actions == ()
+    assert "the start itself violates" in outcome.notes[-1]
 
 
 def test_a_start_at_the_goal_is_a_success_without_steps(kit):
