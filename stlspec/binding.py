@@ -14,12 +14,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from stlspec.compiler.bundle import BundleData, Signal
 from stlspec.demos import Demonstration
 from stlspec.envs.catalogue import environment_of
-from stlspec.envs.model import Environment
+from stlspec.envs.model import Environment, derive_actions
 from stlspec.errors import DataError, Diagnostic, InputError, diagnostic
 from stlspec.readers.model import Array, Recording, column_of, plain
 from stlspec.sampling import OnNan, check_on_nan, in_unit_of, resampled, settled
@@ -51,22 +50,6 @@ class BoundDemonstration:
     def name(self) -> str:
         """The name of the demonstration."""
         return self.demonstration.name
-
-
-def derive_actions(environment: Environment, states: npt.ArrayLike) -> tuple[int | None, ...] | None:
-    """Find the action between each state and the next; the lowest one where several lead there.
-
-    Paper: demonstrations are sequences of states; Algorithms 2 and 3 need state and action.
-
-    Args:    states: (n_samples,), numbers of states of `environment`.
-    Returns: n_samples - 1 actions, None where none leads there; None without a deterministic table.
-    """
-    if environment.table is None:
-        return None
-    numbers = np.asarray(states, dtype=np.int64)
-    leads = environment.table[numbers[:-1]] == numbers[1:, None]
-    found = np.where(leads.any(axis=1), leads.argmax(axis=1), -1)
-    return tuple(None if action < 0 else action for action in found.tolist())
 
 
 def bind(
@@ -120,6 +103,15 @@ def bind(
         actions=recording.actions,
         environment=home,
     )
+
+
+def columns_of(bundle: BundleData, environment: Environment | None = None) -> frozenset[str]:
+    """Return the columns of a recording that `bind` may look at.
+
+    Not in the paper: it spares the reading of others.
+    """
+    places = () if environment is None else environment.state_signals
+    return frozenset({*map(_key, _used(bundle)), *places})
 
 
 def _used(bundle: BundleData) -> list[Signal]:

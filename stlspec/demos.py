@@ -4,18 +4,23 @@ In: files of any format that a reader knows, or arrays. Out: `Demonstration`, wh
 what a spec reads from one is the matter of `binding`.
 """
 
+import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from stlspec.compiler.files import write_bytes
+from stlspec.envs.catalogue import environment_of, make_live
+from stlspec.envs.model import Environment, derive_actions
 from stlspec.errors import DataError, Diagnostic, InputError
+from stlspec.readers import minari
 from stlspec.readers.document import SCHEMA
-from stlspec.readers.model import Array, Recording, checked, column_of, plain, time_of
+from stlspec.readers.model import Array, Recording, checked, column_of, plain, refusal, time_of
 from stlspec.readers.registry import read_recordings
 from stlspec.traces import unmasked, whole_stamps
 
@@ -34,13 +39,15 @@ class Demonstration:
         return self.recording.n_samples
 
 
-def load_demonstrations(paths: str | Path | Sequence[str | Path]) -> tuple[Demonstration, ...]:
+def load_demonstrations(
+    paths: str | Path | Sequence[str | Path], columns: Collection[str] | None = None
+) -> tuple[Demonstration, ...]:
     """Read all demonstrations of some files, in the order of the files.
 
     Not in the paper: file formats.
 
-    Args:    paths: one file, or several.
-
+    Args:    paths: one file, or several; `minari:ID` is a dataset of Minari. columns: the signals that are wanted
+             (`binding.columns_of`); formats in which columns lie apart leave out the others. None = all.
     Returns: demonstrations; a file may hold several.
     Raises: DataError: some files cannot be used; it carries the diagnostics of all of them.
     """
@@ -48,7 +55,7 @@ def load_demonstrations(paths: str | Path | Sequence[str | Path]) -> tuple[Demon
     problems: list[Diagnostic] = []
     for path in [paths] if isinstance(paths, str | Path) else paths:
         try:
-            recordings = read_recordings(Path(path))
+            recordings = read_recordings(Path(path), columns)
         except InputError as error:
             problems += error.diagnostics
             continue
@@ -86,6 +93,50 @@ def make_demonstration(
         env=env,
     )
     return Demonstration(name, checked(recording, Path(name)))
+
+
+def save_demonstrations(demonstrations: Sequence[Demonstration], target: str | Path) -> None:
+    """Write demonstrations to a file, whole or not at all.
+
+    Not in the paper: file formats.
+
+    Args:   target: a file that ends in .jsonl (one a line) or .json, or `minari:ID`, which keeps states, actions and
+            signals (as infos) but no time stamps.
+    Raises: DataError D831: no writer knows the suffix; others as the format has it. InputError S092: the file cannot
+            be written.
+    """
+    path = Path(target)
+    if str(target).startswith(minari.SCHEME):
+        _save_minari(demonstrations, str(target).removeprefix(minari.SCHEME))
+        return
+    documents = [document_of(demonstration) for demonstration in demonstrations]
+    if path.suffix == ".jsonl":
+        text = "".join(json.dumps(d, ensure_ascii=False, allow_nan=False) + "\n" for d in documents)
+    elif path.suffix == ".json":
+        text = json.dumps(documents, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    else:
+        raise refusal("D831", path, suffix=path.suffix, help="write .jsonl or .json, or minari:ID")
+    write_bytes(path, text.encode())
+
+
+def _save_minari(demonstrations: Sequence[Demonstration], name: str) -> None:
+    """Write a dataset whose states and actions are those of the environment that all demonstrations name."""
+    recordings = [demonstration.recording for demonstration in demonstrations]
+    descriptions = [r.env for r in recordings]
+    live = None
+    if recordings and descriptions[0] is not None and all(d == descriptions[0] for d in descriptions):
+        world = environment_of(descriptions[0])
+        if world.n_states:
+            recordings = [r if r.states is None else _numbered(r, world) for r in recordings]
+        live = make_live(world)
+    minari.write(recordings, name, live)
+
+
+def _numbered(recording: Recording, world: Environment) -> Recording:
+    """Return the recording with numbers for states, as gymnasium observes them, and with actions."""
+    numbers = world.encode_all(recording.states or ())
+    actions = recording.actions if recording.actions is not None else derive_actions(world, numbers)
+    return replace(recording, states=tuple(numbers.tolist()), actions=actions)
 
 
 def document_of(demonstration: Demonstration) -> dict[str, Any]:

@@ -14,7 +14,15 @@ ORDER = (
     "scores rewards wrapper gym learning paper pictures pages report tools cli __main__"
 ).split()
 LIGHT = ("numpy", "networkx", "gymnasium", "rich", "typer", "lark", "matplotlib")
-LATE = {"networkx": {"compiler/graph.py"}, "matplotlib": {"learning/plots.py", "pictures/drawing.py"}}
+LATE = {
+    "networkx": {"compiler/graph.py"},
+    "matplotlib": {"learning/plots.py", "pictures/drawing.py"},
+    "pyarrow": {"readers/parquet.py"},
+    "minari": {"readers/minari.py"},
+    "gymnasium": {"readers/minari.py"},
+    "h5py": {"readers/minari.py"},
+    "PIL": {"readers/minari.py"},
+}
 """Third-party packages that may be imported inside functions, and where."""
 MODULES = sorted(PACKAGE.rglob("*.py"))
 

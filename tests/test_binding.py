@@ -13,11 +13,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stlspec.binding import bind, derive_actions
+from stlspec.binding import bind, columns_of
 from stlspec.compiler.bundle import BundleData, Signal, TimeBase
 from stlspec.compiler.ir import Builder
 from stlspec.demos import Demonstration, make_demonstration
 from stlspec.envs.catalogue import make_environment
+from stlspec.envs.model import derive_actions
 from stlspec.errors import InputError
 from stlspec.readers.model import Recording
 
@@ -368,3 +369,9 @@ def test_samples_are_taken_again_before_states_are_counted():
     bound = bind(replace(spec("x"), time=base), demonstration, GRID, resample=500_000_000)
     assert values(bound) == {"x": [1, 2, 3]}
     assert (bound.time.tolist(), bound.states, bound.actions) == ([0, 0.5, 1], (0, 1, 4), (2, 1))
+
+
+def test_only_what_may_be_read_is_asked_for():
+    used = spec("x", Signal("v", source="speed"), unused=(Signal("z"),))
+    assert columns_of(used) == {"x", "speed"}
+    assert columns_of(used, make_environment("MountainCar-v0")) == {"x", "speed", "position", "velocity"}

@@ -27,6 +27,7 @@ _FACTORIES = {
     "MountainCar-v0": "stlspec.envs.mountaincar:environment",
 }
 _FOREIGN = "stlspec.envs.foreign:environment"
+_LIVE = "stlspec.envs.foreign:make"
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 _FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 _KEPT = 16
@@ -58,6 +59,17 @@ def make_environment(
         return _made(id, key, rows)
     except StlspecError as error:
         raise type(error)([_in_file(d, file) for d in error.diagnostics]) from error
+
+
+def make_live(environment: Environment, **options: Any) -> Any:
+    """Make the live gymnasium environment that `environment` describes.
+
+    Not in the paper: an interface.
+
+    Args:   options: further keyword arguments of `gymnasium.make`, such as render_mode.
+    Raises: UsageError D843: gymnasium could not make it.
+    """
+    return EntryPoint(environment.id, _LIVE, GROUP).load()(environment, **options)
 
 
 def environment_of(description: Any, *, file: str | None = None) -> Environment:

@@ -190,6 +190,22 @@ class Environment:
         )
 
 
+def derive_actions(environment: Environment, states: npt.ArrayLike) -> tuple[int | None, ...] | None:
+    """Find the action between each state and the next; the lowest one where several lead there.
+
+    Paper: demonstrations are sequences of states; Algorithms 2 and 3 need state and action.
+
+    Args:    states: (n_samples,), numbers of states of `environment`.
+    Returns: n_samples - 1 actions, None where none leads there; None without a deterministic table.
+    """
+    if environment.table is None:
+        return None
+    numbers = np.asarray(states, dtype=np.int64)
+    leads = environment.table[numbers[:-1]] == numbers[1:, None]
+    found = np.where(leads.any(axis=1), leads.argmax(axis=1), -1)
+    return tuple(None if action < 0 else action for action in found.tolist())
+
+
 def _shown(value: Any) -> str:
     text = repr(value.tolist() if isinstance(value, np.ndarray | np.generic) else value)
     return text if len(text) <= 40 else text[:37] + "..."

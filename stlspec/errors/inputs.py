@@ -319,4 +319,15 @@ CODES: tuple[Code, ...] = (
         good="# time s, with --resample 100ms",
         kind="shown",
     ),
+    Code(
+        "D847",
+        "a format whose extra is not installed",
+        "error",
+        message="reading {format} needs a package that is not installed",
+        help="pip install 'stlspec[{extra}]'",
+        explanation="Formats that need a large library come in extras, so that nobody installs what they do not use.",
+        bad="# stlspec score spec.stl log.parquet, without the extra",
+        good="# pip install 'stlspec[parquet]'",
+        kind="shown",
+    ),
 )

@@ -74,12 +74,12 @@ def repeated(names: Sequence[str]) -> str | None:
     return next((name for name, times in Counter(names).items() if times > 1), None)
 
 
-def read_bytes(file: Path, expected: str, at_most: int = BYTES_AT_MOST) -> bytes:
-    """Read a whole file, its size bounded.
+def required_file(file: Path, expected: str, at_most: int | None = None) -> None:
+    """Refuse what is no regular file with something in it.
 
     Not in the paper: file access.
 
-    Args:   expected: what the file should hold, for the message when it is empty.
+    Args:   expected: what the file should hold, for the message when it is empty. at_most: bytes.
     Raises: DataError D830: it is missing, no regular file or unreadable; D833: it is empty; D838: it is too
         large.
     """
@@ -94,14 +94,34 @@ def read_bytes(file: Path, expected: str, at_most: int = BYTES_AT_MOST) -> bytes
                 help="name the files inside it" if here else "check the path",
             )
         size = file.stat().st_size
-        if size > at_most:
-            raise refusal("D838", file, size=f"{size:,}", limit=f"{at_most:,}")
-        data = file.read_bytes()
     except (OSError, ValueError) as error:
-        # pathlib raises ValueError for a name with a NUL in it.
-        raise refusal(
-            "D830", file, reason=getattr(error, "strerror", None) or str(error), help="check the path"
-        ) from None
+        raise _unreadable(file, error) from None
+    if at_most is not None and size > at_most:
+        raise refusal("D838", file, size=f"{size:,}", limit=f"{at_most:,}")
+    if size == 0 and at_most is None:
+        raise refusal("D833", file, expected=expected)
+
+
+def _unreadable(file: Path, error: OSError | ValueError) -> DataError:
+    # pathlib raises ValueError for a name with a NUL in it.
+    reason = getattr(error, "strerror", None) or str(error)
+    return refusal("D830", file, reason=reason, help="check the path")
+
+
+def read_bytes(file: Path, expected: str, at_most: int = BYTES_AT_MOST) -> bytes:
+    """Read a whole file, its size bounded.
+
+    Not in the paper: file access.
+
+    Args:   expected: what the file should hold, for the message when it is empty.
+    Raises: DataError D830: it is missing, no regular file or unreadable; D833: it is empty; D838: it is too
+        large.
+    """
+    required_file(file, expected, at_most)
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        raise _unreadable(file, error) from None
     if not data:
         raise refusal("D833", file, expected=expected)
     return data

@@ -2,35 +2,49 @@
 
 In: a path. Out: the recordings of the file. The built-in formats are known without package metadata; other
 packages add theirs through the entry point group `stlspec.readers`, under the name of the suffix: a callable
-that takes a `Path` and returns a list of `Recording`. A built-in cannot be replaced, so that installing a
-package never changes what an existing file means.
+that takes a `Path` and returns a list of `Recording`. One that also takes `columns` is told which signals are
+wanted and need not read others. A built-in cannot be replaced, so that installing a package never changes what an
+existing file means.
 """
 
 import difflib
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Collection
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from stlspec.readers import csv, json, jsonl, npz
+from stlspec.readers import csv, json, jsonl, minari, npz, parquet
 from stlspec.readers.model import Recording, refusal
 
-Reader: TypeAlias = Callable[[Path], list[Recording]]
+Reader: TypeAlias = Callable[..., list[Recording]]
 
 GROUP = "stlspec.readers"
-BUILT_IN: dict[str, Reader] = {"csv": csv.read, "json": json.read, "jsonl": jsonl.read, "npz": npz.read}
+BUILT_IN: dict[str, Reader] = {
+    "csv": csv.read,
+    "json": json.read,
+    "jsonl": jsonl.read,
+    "npz": npz.read,
+    "parquet": parquet.read,
+}
 
 
-def read_recordings(path: Path) -> list[Recording]:
+def read_recordings(path: Path, columns: Collection[str] | None = None) -> list[Recording]:
     """Read all recordings of a file, by the reader that its suffix names.
 
     Not in the paper: file formats.
 
+    Args:    path: of a file, or `minari:ID`. columns: the signals that are wanted; formats in which columns lie
+             apart then leave out the others. None = all.
     Returns: at least one recording; a reader has at least one sample in each.
     Raises: DataError D831: no reader knows the suffix; D842: the reader cannot be loaded; others by the
         reader.
     """
-    return _reader(path)(path)
+    reader = minari.read if str(path).startswith(minari.SCHEME) else _reader(path)
+    options: dict[str, Any] = {}
+    if columns is not None and "columns" in inspect.signature(reader).parameters:
+        options["columns"] = columns
+    return reader(path, **options)
 
 
 def _reader(path: Path) -> Reader:

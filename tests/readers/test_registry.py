@@ -62,3 +62,13 @@ def test_a_broken_plug_in_is_named(tmp_path: Path, monkeypatch):
     monkeypatch.setattr(registry, "entry_points", lambda group: (point,))
     found, text = refused(tmp_path / "a.log")
     assert found == "D842" and "no_such_module_here" in text
+
+
+def test_a_reader_that_knows_columns_is_told_which_ones_are_wanted(monkeypatch):
+    asked = []
+    monkeypatch.setitem(registry.BUILT_IN, "csv", lambda path, columns=None: asked.append(columns) or [])
+    monkeypatch.setitem(registry.BUILT_IN, "npz", lambda path: asked.append("plain") or [])
+    registry.read_recordings(Path("a.csv"), {"x"})
+    registry.read_recordings(Path("a.csv"))
+    registry.read_recordings(Path("a.npz"), {"x"})
+    assert asked == [{"x"}, None, "plain"]
