@@ -76,6 +76,10 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
                  not offered; D871: an option is out of range; D876: the spec measures stamps; D880: the
                  environment resets itself.
         """
+        if isinstance(env, gymnasium.vector.VectorEnv):
+            what = "STLReward wraps one environment, and this is a vector of them"
+            way_out = "wrap each: SyncVectorEnv([lambda: STLReward(gymnasium.make(ID), SPEC)] * 4)"
+            raise UsageError([diagnostic("D880", what=what, help=way_out)])
         if isinstance(spec, BundleData) and not isinstance(spec, api.Bundle):
             spec = api.publish(spec)
         plain: dict[str, Any] = {

@@ -213,6 +213,8 @@ def test_options_out_of_range_are_refused(options, part):
 def test_what_cannot_be_wrapped_is_refused():
     with pytest.raises(UsageError, match="D880"):
         STLReward(Autoreset(gymnasium.make("FrozenLake-v1")), GRID)
+    with pytest.raises(UsageError, match="wrap each"):
+        STLReward(SyncVectorEnv([grid]), GRID)
     with pytest.raises(UsageError, match="d_gaol"):
         STLReward(gymnasium.make("FrozenLake-v1"), "signal d_gaol\nsoft a: eventually (d_gaol < 1)")
     with pytest.raises(UsageError, match="D870"):

@@ -6,7 +6,8 @@ over tables of conditions, make a task; settings -> evidence (demonstrations as 
 of the mask) -> shaping (what a step pays) and promises (the potential) -> qstl (training) -> segments (from a
 state to a goal, shaped by guidance, kept by resume) -> tours and chains (through several goals) -> conclusion
 -> outcome, with policy and route, lessons and farming -> results, plots, account, storage (the directory of a
-run). `training.learn` is the whole line, `many.learn_many` many of them at once.
+run). Where transitions are by chance or between bins, experience (with chance, runs and satisfaction) takes the
+place of the middle. `training.learn` is the whole line, `many.learn_many` many of them at once.
 """
 
 from stlspec.learning.many import learn_many

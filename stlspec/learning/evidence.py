@@ -140,7 +140,14 @@ def violating_pairs(task: Task, states: Sequence[int]) -> set[Pair]:
 
 
 def notes(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...]:
-    """Say what bad demonstrations did, since the reward does not show it. Not in the paper: the report."""
+    """Say what bad demonstrations did, and how far the reward is trusted. Not in the paper: the report."""
+    bad = _notes_on_bad(evidence, method, mask)
+    if method == "shaped" and not evidence.at_home and not evidence.reward.all_zero:
+        return (*bad, "the reward was inferred on another map, so it shapes little: its order may mislead here")
+    return bad
+
+
+def _notes_on_bad(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...]:
     if not evidence.bad:
         return ()
     count = f"{evidence.bad} bad demonstration{'' if evidence.bad == 1 else 's'}"

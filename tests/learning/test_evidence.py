@@ -80,6 +80,8 @@ def test_the_report_says_what_bad_demonstrations_did(small):
     assert "only the pictures" in notes(evidence, "shaped", False)[0]
     assert "only the reward map" in notes(evidence, "paper", False)[0]
     assert notes(replace(evidence, bad=0), "shaped", True) == ()
+    assert "it shapes little" in notes(replace(evidence, bad=0, at_home=False), "shaped", True)[0]
+    assert notes(replace(evidence, bad=0, at_home=False), "plain", True) == ()
 
 
 def test_a_demonstration_of_an_environment_that_cannot_be_made_is_not_taken_for_one_of_this_map(small):

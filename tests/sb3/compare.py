@@ -4,7 +4,7 @@ Run it as `python tests/sb3/compare.py [SEEDS] [STEPS]` in an environment with t
 gymnasium-robotics. All agents are PPO with the same settings on the environment's own dense reward; "spec" means
 `STLReward` with specs/point_maze.stl around every copy, a violation costing 1. Both kinds are evaluated on the
 same episodes, with the same spec as the judge. It prints a line for each agent and the medians, and exits with 1
-if the agents with the spec do not violate it less often, or reach the goal in fewer than half of the episodes.
+unless the agents with the spec violate it less often, and more often reach the goal without violating it.
 """
 
 import statistics
@@ -70,9 +70,9 @@ def main(seeds, steps):
         print(
             "median {:5} violates {:.2f}, reaches {:.2f}, both right {:.2f}, steps too fast {:.3f}".format(name, *row)
         )
-    return int(not (medians["spec"][0] < medians["plain"][0] and medians["spec"][1] >= 0.5))
+    return int(not (medians["spec"][0] < medians["plain"][0] and medians["spec"][2] > medians["plain"][2]))
 
 
 if __name__ == "__main__":
     given = [int(argument) for argument in sys.argv[1:]]
-    sys.exit(main(*(given + [5, 150_000][len(given) :])))
+    sys.exit(main(*(given + [3, 300_000][len(given) :])))
