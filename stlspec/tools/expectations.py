@@ -162,6 +162,9 @@ class _Runner:
         if name not in self._alone:
             self._alone[name] = only(self._tests.bundle, name)
         bundle, at = self._alone[name], int(statement.at.value) if statement.at is not None else 0
+        if isinstance(statement.data, InlineData):
+            # Its columns are signals, whatever columns of a file they are read from elsewhere.
+            bundle = replace(bundle, signals=tuple(replace(signal, source=None) for signal in bundle.signals))
         bound = bind(bundle, demonstration, self._environment)
         file = demonstration.file or demonstration.name
         result = evaluate_ending(bundle, bound.signals, bound.time, at=at, file=file)[name]
@@ -202,12 +205,11 @@ class _Runner:
         raise UsageError([diagnostic("D880", file=path, what=f"the file has no episode {wanted}", help=way)])
 
     def _inline(self, data: InlineData) -> Demonstration:
-        sources = {signal.name: signal.source for signal in self._tests.bundle.signals}
         columns = {c.name.text: [sample.value for sample in c.samples] for c in data.columns}
-        time = columns.pop(TIME, None) if TIME not in sources else None
+        is_signal = any(signal.name == TIME for signal in self._tests.bundle.signals)
+        time = None if is_signal else columns.pop(TIME, None)
         line = self._tests.syntax.source.position(data.span.start).line
-        signals = {sources.get(name) or name: values for name, values in columns.items()}
-        return make_demonstration(f"{self._tests.path}:{line}", signals, time=time)
+        return make_demonstration(f"{self._tests.path}:{line}", columns, time=time)
 
 
 def only(bundle: BundleData, name: str) -> BundleData:

@@ -165,3 +165,9 @@ def test_a_requirement_alone_keeps_its_formula_and_forgets_the_rest():
     assert [r.name for r in alone.requirements] == ["reach"] and alone.requirements[0].depends_on == ()
     assert {node.value for node in alone.nodes if node.op == "signal"} == {"d_goal"}
     assert alone.names["at_goal"] < len(alone.nodes) and alone.weights == (1.0,)
+
+
+def test_data_in_a_spec_names_signals_even_where_two_are_read_from_one_column(run):
+    spec = 'signal a from "c"\nsignal b from "c"\nsignal time\nhard h: always (a > b and time > 0)\n'
+    assert [o.result for o in run("expect h holds on {a: [2], b: [1], time: [1]}", spec)] == ["met"]
+    assert [o.result for o in run("expect h fails on {a: [1], b: [2], time: [1]} margin >= 1", spec)] == ["met"]

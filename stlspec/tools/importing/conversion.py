@@ -21,6 +21,8 @@ from stlspec.tools.importing.writing import spec_text
 READERS = {"rtamt": rtamt.read, "breach": breach.read}
 _BREACH = re.compile(r":=|\b(?:alw|ev)(?:_\s*\[)?\b|\[\s*t\s*\]|^\s*(?:(?:in|out)put\s+)?signal\s+\w+\s*,", re.M)
 
+_REMARKS = re.compile(r"/\*.*?\*/|(?:#|//|%)[^\n]*", re.S)
+"""What any of the tools takes for a comment."""
 _COMMENTS = re.compile(r"^\s*(?:#|//|%)[^\n]*", re.M)
 
 
@@ -52,7 +54,7 @@ def convert(source: SourceText, tool: str | None = None, time: str | None = None
     if tool is None:
         _refuse_own(source)
         program = looks_like_program(source)
-        tool = "breach" if _BREACH.search(source.text) and not program else "rtamt"
+        tool = "breach" if _BREACH.search(_REMARKS.sub("", source.text)) and not program else "rtamt"
     draft = READERS[tool](source, time)
     if not draft.problems and not draft.assigned:
         what = f"no formula of {draft.tool} is here"

@@ -21,6 +21,7 @@ BREACH = "signal x, y\nparam p=3, tau = 2\nmu := x[t]>p\nphi := alw_[0, tau] (mu
         (RTAMT, "rtamt"),
         ("always[0:5](x > 3)", "rtamt"),
         ("out = G (x > 3)", "rtamt"),
+        ("// phi := alw_[0, 1] (x[t] > 3)\nout = G (x > 3)", "rtamt"),
         (BREACH, "breach"),
         ("phi := ev (x[t] > 3)", "breach"),
     ],
