@@ -21,7 +21,7 @@ def record(
         Path, typer.Option("--output", "-o", metavar="DEMO", help="a .jsonl or .json file; added to if it exists")
     ],
     spec: Annotated[
-        Path | None, typer.Argument(metavar="[SPEC]", help="a spec to watch while recording, or a bundle")
+        Path | None, typer.Argument(metavar="SPEC", help="a spec to watch while recording, or a bundle")
     ] = None,
     params: Params = None,
     env_arg: EnvArgs = None,

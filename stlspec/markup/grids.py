@@ -49,8 +49,8 @@ def board_svg(board: Board, title: str, size: float = 420.0) -> Markup:
         element("path", d=walls, class_="stl-wall") if walls else None,
         element("path", d=_lines(down, right, side), class_="stl-rule") if side > 8 else None,
         *(_numbers(shown, side, right) if numbers else []),
-        *_line(board, block, side),
         *_ends(board.rows, block, side),
+        *_line(board, block, side),
     ]
     said = [f"{n_rows} rows, {n_columns} columns"]
     if board.values:

@@ -86,7 +86,7 @@ def _contents(view: RewardView) -> list[Markup]:
         board = board_svg(Board(world.map, view.values), "The inferred reward on the map", 480)
         words = (
             f"R(s) of {counted(len(view.values), 'state')}, from {number(min(view.values.values()))} to "
-            f"{number(max(view.values.values()))}; all others 0. Plain: positive; hatched: negative; dark squares: "
+            f"{number(max(view.values.values()))}; all others 0. Plain: positive; hatched: negative; filled squares: "
             "obstacles; ring: start; stars: goals."
         )
         return [element("figure", board, element("figcaption", words), class_="map")]

@@ -97,6 +97,7 @@ def test_ctrl_c_in_the_terminal_is_told_on_the_page(record: Any, visit: Callable
     steps(page, 0)
     page.keyboard.press("ArrowUp")
     steps(page, 1)
+    page.wait_for_function("() => source.readyState === EventSource.OPEN")
     process.send_signal(signal.SIGINT)
     page.get_by_text("The unfinished one was saved too.").wait_for()
     assert process.wait(10) == 130

@@ -7,7 +7,7 @@ shown live is what the score will say.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from stlspec.binding import BoundDemonstration, bind
@@ -107,8 +107,10 @@ class Follower:
         return Standings(known, {name: values[-1].item() for name, values in bound.signals.items()})
 
     def _bound(self, take: Take) -> BoundDemonstration:
-        demonstration = take.demonstration("this take", self._environment, self._bundle)
-        return bind(self._bundle, demonstration, self._environment)
+        made = take.demonstration(f"a recording in {self._environment.id}", self._environment, self._bundle)
+        # The environment is at hand; it need not be made again from its description.
+        made = replace(made, recording=replace(made.recording, env=None))
+        return bind(self._bundle, made, self._environment)
 
     def _known(self, take: Take, bound: BoundDemonstration) -> Mapping[str, Standing]:
         monitor, known, seen = make_monitor(self._bundle), dict[str, Standing](), 0
