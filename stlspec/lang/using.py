@@ -108,7 +108,7 @@ class _Files:
                 text = self._text(path)
             except InputError as error:
                 first = error.diagnostics[0]
-                problem, way = first.message, f"`{path}` was meant: a path begins at the file that says `use`"
+                problem, way = first.message, f"looked for `{path[:80]}`: a path begins at the file that says `use`"
                 if first.code != "S092":
                     way = first.help
                 span = statement.path.span

@@ -169,6 +169,7 @@ def test_a_used_file_is_a_regular_file_with_the_text_of_a_spec(tmp_path):
     bundle.write_bytes(bundle_file.dump(compile_source(SourceText.of("s", SPEC))))
     assert code_of(InputError, read_used, str(bundle)) == "B706"
     assert code_of(InputError, read_used, str(tmp_path)) == "S092"
+    assert code_of(InputError, read_used, "a" * 5000) == "S092"
     os.mkfifo(tmp_path / "pipe")
     assert code_of(InputError, read_used, str(tmp_path / "pipe")) == "S092"
     (tmp_path / "mesh.stl").write_bytes(ASCII_MESH)
