@@ -14,13 +14,16 @@ from stlspec.learning.shaping import AVOIDED, GOAL, RUNS, TERMINAL, VIOLATION
 from stlspec.learning.task import SETTLED, Task, World, open_watches
 from stlspec.learning.tours import CHAIN, Judge, Key, Leg, Search, Tour, merit
 
-MOST_CHAINS = 6
+MOST_CHAINS = 12
 """Orders that are tried, those first whose segments did best."""
 
 ALPHA = 1.0
 """The learning rate of chains: moves are deterministic, so a step can be believed at once."""
 
 _GUIDANCE = 0.1
+
+_AT_ONCE = 2
+"""Chains that are trained before their tours are judged; not the number of processes, which changes no result."""
 
 _MOST_STATES = 400_000
 
@@ -29,7 +32,7 @@ def find_chains(search: Search, trainer: Trainer, judge: Judge) -> None:
     """Train the most promising orders as wholes, and collect their tours.
 
     Not in the paper: Algorithm 3 takes a goal as one state. Chains first keep up what soft requirements ask for on
-    the way, then head straight for their goals.
+    the way, then head straight for their goals; the first that meet everything end the search.
 
     Args:    search: of tours; grows. trainer: trains chains. judge: judges tours.
     """
@@ -38,14 +41,18 @@ def find_chains(search: Search, trainer: Trainer, judge: Judge) -> None:
     if not any(_several(world, goal) for order in orders for goal in order):
         return
     watched = open_watches(world, (world.product.start,))
-    for watches in dict.fromkeys((watched, ())):
-        keys: list[Key] = [(world.product.start, CHAIN, (*order, *_marked(watches))) for order in orders]
-        jobs = [chain_job(search, key, order, watches) for key, order in zip(keys, orders, strict=True)]
-        for key, order, job, found in zip(keys, orders, jobs, trainer(jobs), strict=True):
+    wanted = [(order, watches) for watches in dict.fromkeys((watched, ())) for order in orders]
+    for first in range(0, len(wanted), _AT_ONCE):
+        batch = wanted[first : first + _AT_ONCE]
+        keys: list[Key] = [(world.product.start, CHAIN, (*order, *_marked(watches))) for order, watches in batch]
+        jobs = [chain_job(search, key, *order) for key, order in zip(keys, batch, strict=True)]
+        for key, (order, _), job, found in zip(keys, batch, jobs, trainer(jobs), strict=True):
             search.tasks[key] = job.task
             trained = search.segments[key] = in_learner_states(found, world.product.n_states)
             legs = tuple(Leg(goal, key) for goal in order)
             search.candidates.append(Tour(legs, trained.path, trained.actions, trained.reached))
+        if any(judge(tour.path).meets_all for tour in search.candidates[-len(batch) :]):
+            return
 
 
 def _marked(watches: Sequence[int]) -> tuple[int, ...]:
@@ -69,9 +76,9 @@ def _several(world: World, goal: int) -> bool:
 def chain_job(search: Search, key: Key, order: Sequence[int], watches: Sequence[int]) -> Job:
     """Return the job that trains an order as a whole.
 
-    Not in the paper: see `find_chains`. The potential promises a little more than any way can pay, most along
-    the demonstrations: what was never tried looks better than what was, so that the first way through all goals
-    is not walked for ever when another, far off, is shorter.
+    Not in the paper: see `find_chains`. Values start at a little more than any way can pay, most along the
+    demonstrations: what was never tried looks better than what was, so that the first way through all goals is not
+    walked for ever when another, far off, is shorter.
     """
     world, stages = search.world, len(order)
     stream = (1 + key[0], 0, *(1 + goal for goal in order), len(watches))
@@ -80,10 +87,10 @@ def chain_job(search: Search, key: Key, order: Sequence[int], watches: Sequence[
     guide = [1 + _GUIDANCE * max(0.0, search.potential[world.place(s)]) for s in range(size)]
     potential = guide * stages
     forbidden = tuple((k * size + s, a) for k in range(stages) for s, a in sorted(search.forbidden))
-    limit = search.settings.max_steps * stages
-    settings = replace(search.settings, max_steps=limit, alpha=ALPHA)
+    limit, episodes = search.settings.max_steps * stages, search.settings.episodes * stages
+    settings = replace(search.settings, method="plain", max_steps=limit, episodes=episodes, alpha=ALPHA)
     name = search.fingerprint(task, settings, potential, forbidden)
-    return Job(task, settings, tuple(potential), forbidden, search.directory, name)
+    return Job(task, settings, tuple(potential), forbidden, search.directory, name, hopeful=True)
 
 
 def chain_task(world: World, order: Sequence[int], watches: Sequence[int], stream: tuple[int, ...] = ()) -> Task:

@@ -42,8 +42,10 @@ Advance = Callable[[int, int], object]
 class Job:
     """What to train.
 
-    potential: R in each learner state. forbidden: pairs of state and action to mask from the start.
-    directory, key: where the state is kept, and the fingerprint of the run; None = nowhere.
+    potential: in each learner state, see `Learner`. hopeful: values start at the potential, and nothing but
+    trying lowers them (only with the method plain, which has no other use for it). forbidden: pairs of state
+    and action to mask from the start. directory, key: where the state is kept, and the fingerprint of the run;
+    None = nowhere.
     """
 
     task: Task
@@ -52,6 +54,7 @@ class Job:
     forbidden: tuple[tuple[int, int], ...] = ()
     directory: Path | None = None
     key: str = ""
+    hopeful: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +90,8 @@ def train(job: Job, advance: Advance | None = None) -> Segment:
     Returns: the segment.
     """
     learner = Learner(job.task, job.settings, job.potential)
+    if job.hopeful:
+        learner.q[:] = [[value] * job.task.n_actions for value in job.potential]
     if job.settings.mask:
         learner.forbid(job.forbidden)
     prefilled = learner.masked

@@ -42,6 +42,19 @@ def test_what_is_forbidden_is_never_tried():
     assert set(found.outcomes) == {GOAL}
 
 
+def test_hope_is_lowered_by_trying_alone():
+    """Two ways to the goal: the long one is found first, and only hope makes the learner look for the short one."""
+    ring = Task(
+        "goal", 6, 2, 0, ((1, 5), (2, 0), (3, 1), (3, 3), (3, 5), (4, 0)), (RUNS,) * 3 + (GOAL, RUNS, RUNS), ((),) * 6
+    )
+    settings = replace(SETTINGS, episodes=200, epsilon=0.0, alpha=1.0, gamma=0.99)
+    found = train(Job(ring, settings, (1.0,) * 6, hopeful=True))
+    assert found.reached
+    assert all(value <= 1 for row in found.q for value in row)
+    assert {len(path) for *_, path in found.looks} == {4}
+    assert found.q[5][0] < 1 and found.q[2][0] == pytest.approx(0.99)
+
+
 def test_only_what_violates_a_hard_requirement_is_shared():
     """State 3 violates; state 4 only breaks what a soft requirement keeps up."""
     assert shared_mask(TASK, [train(JOB)], [False, False, False, True, False]) == {(0, 1)}
