@@ -4,6 +4,7 @@ In: the syntax and the values of params. Out: the `Model` and every diagnostic, 
 root cause is reported once: names that broken statements declare are known, and broken expressions stay silent.
 """
 
+import re
 from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
@@ -15,7 +16,7 @@ from stlspec.compiler.inference import MANY_PROBLEMS, Inference
 from stlspec.compiler.model import BROKEN, FORMULA, Binding, Declared, Model, Typing
 from stlspec.compiler.names import declare
 from stlspec.compiler.templates import TemplateInference
-from stlspec.errors import Diagnostic, Label, diagnostic
+from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.nodes import (
     LetStatement,
     Name,
@@ -31,6 +32,7 @@ from stlspec.source import SourceText, Span
 _TYPES = ("real", "bool")
 BOUNDINGS = ("tanh", "linear", "none")
 _VANISHING = 1 / 100
+_CLAUSE = re.compile(r"[ \t]*depends\s+on\s+\Z")
 
 
 def check(syntax: Syntax, bindings: Mapping[str, Binding] | None = None) -> tuple[Model, tuple[Diagnostic, ...]]:
@@ -265,11 +267,24 @@ def _edge(
         close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
         what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
         way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"
-        return diagnostic("G502", source=source, span=on.span, name=name, on=on.text, help=way)
+        edits = (Edit(on.span, close),) if close else _independent(source, requirement, on)
+        return diagnostic("G502", source=source, span=on.span, edits=edits, name=name, on=on.text, help=way)
     if requirement.strength == "hard" and other.strength == "soft":
         place = Label(other.name.span, "declared soft here", source)
         return diagnostic("G504", source=source, span=on.span, labels=(place,), name=name, on=on.text)
     return None
+
+
+def _independent(source: SourceText, requirement: RequirementStatement, on: Name) -> tuple[Edit, ...]:
+    """Return the edit that takes `on` from what a requirement depends on; none where a comment stands in the way."""
+    names = requirement.depends_on
+    at = names.index(on)
+    if len(names) == 1:
+        clause = _CLAUSE.search(source.text, requirement.span.start, on.span.start)
+        span = Span(clause.start(), on.span.end) if clause else None
+    else:
+        span = Span(names[at - 1].span.end, on.span.end) if at else Span(on.span.start, names[1].span.start)
+    return (Edit(span, ""),) if span and not re.search("#|//", source.slice(span)) else ()
 
 
 def _circle(source: SourceText, declared: Declared, circle: list[str]) -> Diagnostic:

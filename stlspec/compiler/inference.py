@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from stlspec.compiler.constants import FOLDABLE, fold
-from stlspec.compiler.intervals import ticks_of
+from stlspec.compiler.intervals import swapped, ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
 from stlspec.compiler.quantities import Quantities, Unit
 from stlspec.errors import Diagnostic, Edit, Label, diagnostic
@@ -72,7 +72,7 @@ class Inference:
         self.typings: dict[int, Typing] = {}
         self.intervals: dict[int, tuple[int, int | None]] = {}
         self.quantities = Quantities(self._report)
-        self._said: set[tuple[str, str]] = set()
+        self._said: dict[tuple[str, str], int] = {}
 
     def enter(self, file: Syntax) -> None:
         """Go on with expressions of another file: names are those that it sees, places are in its text."""
@@ -95,8 +95,10 @@ class Inference:
         """Report a problem; one with a name only once in each statement."""
         about = (code, fields.get("name", ""))
         if code.startswith("N") and about in self._said:
+            first = self._said[about]
+            self.problems[first] = self.problems[first].also_at(span)
             return BROKEN
-        self._said.add(about)
+        self._said[about] = len(self.problems)
         self.problems.append(diagnostic(code, source=self.source, span=span, labels=labels, **fields))
         return BROKEN
 
@@ -172,7 +174,8 @@ class Inference:
             return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
         close = closest(name, [*self.known(), "now", "true", "false", "inf"]) if few else None
-        return self._report("N101", node.span, name=name, help=_way_out(name, close))
+        edits = (Edit(node.span, close),) if close else ()
+        return self._report("N101", node.span, edits=edits, name=name, help=_way_out(name, close))
 
     def _index(self, node: Index) -> Typing:
         inner = self._name(node.name)
@@ -213,7 +216,8 @@ class Inference:
         templates = [other for other, let in self.declared.lets.items() if let.arguments and self.sees(other)]
         close = closest(name, [*templates, *FUNCTIONS, *OPERATOR_WORDS])
         way = f"did you mean `{close}`?" if close else f"the functions are {', '.join([*FUNCTIONS, *templates[:5]])}"
-        return self._report("N103", node.function.span, name=name, help=way)
+        edits = (Edit(node.function.span, close),) if close else ()
+        return self._report("N103", node.function.span, edits=edits, name=name, help=way)
 
     def _prefix(self, node: Prefix, below: Typing) -> Typing:
         if node.operator.word == "neg":
@@ -252,7 +256,9 @@ class Inference:
     def _comparison(self, node: Infix, below: list[Typing]) -> Typing:
         for operator in node.operators:
             if operator.word == "assign":
-                return self._report("S008", operator.span, edits=(Edit(operator.span, "=="),))
+                sign = "iff" if FORMULA in below else "=="
+                edits = tuple(Edit(o.span, sign) for o in node.operators if o.word == "assign")
+                return self._report("S008", operator.span, edits=edits, sign=sign)
         words = {operator.word for operator in node.operators}
         if len(node.operators) > 1 and not (words <= {"lt", "le"} or words <= {"gt", "ge"}):
             return self._report("S022", node.operators[1].span)
@@ -360,6 +366,7 @@ class Inference:
             self._report(
                 "T206",
                 interval.span,
+                edits=swapped(self.source, interval) if low > high else (),
                 what="the range ends before it begins" if low > high else "the range holds one value only",
                 help=f"write [{high:g}, {low:g}]" if low > high else "a signal that never changes is a `param`",
             )

@@ -5,13 +5,13 @@ diagnostic. Bounds are rounded to the nearest tick once, here; all window arithm
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
 from stlspec.errors import Diagnostic, Edit, diagnostic
-from stlspec.lang.nodes import Expression, Interval, Number
+from stlspec.lang.nodes import Expression, Infix, Interval, Number
 from stlspec.lang.units import NANOSECONDS, STEP, spell
 from stlspec.source import SourceText, Span
 
@@ -34,8 +34,13 @@ def ticks_of(
     def report(code: str, span: Span, **fields: Any) -> None:
         problems.append(diagnostic(code, source=source, span=span, **fields))
 
-    for node, bound in zip((interval.low, interval.high), bounds, strict=True):
-        _check_unit(bound, node, source.slice(node.span), time, report)
+    nodes = (interval.low, interval.high)
+    plain = [node for node, bound in zip(nodes, bounds, strict=True) if _lacks_unit(bound, time)]
+    if plain:
+        _report_plain(interval, plain, source, time, report)
+    for node, bound in zip(nodes, bounds, strict=True):
+        if bound.unit is not None:
+            _check_unit(bound, node, time, report)
     if len(problems) > before or any(bound.value is None for bound in bounds):
         return None
     low, high = (_in_ticks(bound, time) for bound in bounds)
@@ -47,23 +52,52 @@ def ticks_of(
     return _rounded(low, high, interval, texts, time, report)
 
 
+def swapped(source: SourceText, interval: Interval) -> tuple[Edit, Edit]:
+    """Return the edits that exchange the bounds of an interval. Not in the paper: it serves the messages."""
+    low, high = interval.low.span, interval.high.span
+    return Edit(low, source.slice(high)), Edit(high, source.slice(low))
+
+
 def _in_ticks(bound: Typing, time: TimeBase) -> float:
     assert bound.value is not None
     word = next(iter(bound.unit)) if bound.unit else None
     return bound.value * (NANOSECONDS[word] if word in NANOSECONDS and time.kind != "step" else 1)
 
 
-def _check_unit(bound: Typing, node: Expression, text: str, time: TimeBase, report: Report) -> None:
-    """Refuse a bound in the wrong unit, or one without a unit where the spec has one."""
-    span = node.span
-    if bound.unit is None:
-        if time.kind == "step" or bound.value is None or bound.value in (0, math.inf):
-            return
+def _lacks_unit(bound: Typing, time: TimeBase) -> bool:
+    """Tell whether a bound has no unit where the spec has one; 0 and infinity need none."""
+    return bound.unit is None and time.kind != "step" and bound.value not in (None, 0, math.inf)
+
+
+def _report_plain(
+    interval: Interval, plain: Sequence[Expression], source: SourceText, time: TimeBase, report: Report
+) -> None:
+    """Report the bounds of one interval that lack their unit, both at once."""
+    numbers = [number for node in plain for number in _terms(node)]
+    places = [n.span.end for n in numbers if isinstance(n, Number) and n.unit is None]
+    span = plain[0].span if len(plain) == 1 else interval.span
+    if len(places) < len(numbers):
         way = f"give the numbers and params in it a unit, such as {time.unit}"
-        if isinstance(node, Number):
-            way = f"write `{text} {time.unit}`"
         report("U303", span, unit=time.unit, help=way)
         return
+    edits = tuple(Edit(Span(end, end), f" {time.unit}") for end in places)
+    text = source.slice(span)
+    for end in reversed(places):
+        text = f"{text[: end - span.start]} {time.unit}{text[end - span.start :]}"
+    report("U303", span, unit=time.unit, edits=edits, help=f"write `{text}`")
+
+
+def _terms(node: Expression) -> list[Expression]:
+    """Return the terms of a sum that need a unit each."""
+    if isinstance(node, Infix) and node.operators[0].word in ("add", "sub"):
+        return [term for operand in node.operands for term in _terms(operand)]
+    return [node]
+
+
+def _check_unit(bound: Typing, node: Expression, time: TimeBase, report: Report) -> None:
+    """Refuse a bound in the wrong unit."""
+    span = node.span
+    assert bound.unit is not None
     shown = f"`{spell(bound.unit)}`" if bound.unit else "a plain number"
     word = next(iter(bound.unit)) if len(bound.unit) == 1 else ""
     if time.kind == "step" and bound.unit != {STEP: 1}:
@@ -97,7 +131,7 @@ def _check_order(low: float, high: float, span: Span, texts: list[str], spans: l
     if low == math.inf:
         report("I404", span, problem="it begins at infinity", help="write [0, inf]")
     elif low > high:
-        edits = tuple(map(Edit, spans, reversed(texts)))
+        edits = (Edit(spans[0], texts[1]), Edit(spans[1], texts[0]))
         report("I401", span, edits=edits, low=texts[0], high=texts[1])
 
 

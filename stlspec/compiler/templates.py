@@ -154,7 +154,7 @@ class TemplateInference(Inference):
         self.enter(self.declared.files[let.name.text])
         self.arguments, self.keys = dict(zip(names, below, strict=True)), dict(zip(names, keys, strict=True))
         self.typings, self.intervals, self.calls = {}, {}, {}
-        self.problems, self._said = [], set()
+        self.problems, self._said = [], {}
         self._n_nodes += sum(1 for _ in _all_nodes(let.body))
         result = self._walk(let.body)
         errors = [problem for problem in self.problems if problem.severity == "error"]

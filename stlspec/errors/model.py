@@ -12,7 +12,7 @@ nothing else writes a message, so wording stays in one place.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from stlspec.source import SourceText, Span
@@ -90,6 +90,14 @@ class Diagnostic:
     help: str = ""
     labels: tuple[Label, ...] = ()
     fixes: tuple[Fix, ...] = ()
+
+    def also_at(self, span: Span) -> "Diagnostic":
+        """Return this diagnostic with the edit of its first fix made at a later place too."""
+        if not self.fixes:
+            return self
+        first, *others = self.fixes
+        again = Fix(first.title, (*first.edits, Edit(span, first.edits[0].text)))
+        return replace(self, fixes=(again, *others))
 
     def sort_key(self) -> tuple[str, int, str]:
         """Order by file, then place, then code."""

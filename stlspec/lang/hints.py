@@ -92,6 +92,10 @@ class Failure:
         """The token that does not fit; None at the end."""
         return self.tokens[self.at] if self.at < len(self.tokens) else None
 
+    def place(self, token: Token) -> int:
+        """Return the index of a token; equal ones, such as two brackets, are told apart."""
+        return next(i for i, other in enumerate(self.tokens) if other is token)
+
     @property
     def span(self) -> Span:
         """Where to point: at the token, or just behind the last one."""
@@ -201,7 +205,7 @@ def _misspelt_operator(failure: Failure) -> Diagnostic | None:
     if failure.at and failure.tokens[failure.at - 1].type == "NAME":
         candidates.append(failure.at - 1)
     if failure.brackets and failure.brackets[-1].type == "LSQB":
-        candidates.append(failure.tokens.index(failure.brackets[-1]) - 1)
+        candidates.append(failure.place(failure.brackets[-1]) - 1)
     if failure.token is not None and is_word(failure.token):
         candidates.append(failure.at)
     for i in candidates:
@@ -249,19 +253,22 @@ def _open_interval(failure: Failure) -> Diagnostic | None:
     token, tokens = failure.token, failure.tokens
     if token is None or not failure.brackets:
         return None
-    opening = tokens.index(failure.brackets[-1])
+    opening = failure.place(failure.brackets[-1])
     if not opening or tokens[opening - 1].type not in _TEMPORAL:
         return None
     inside = tokens[opening + 1 :]
     ends = next((i for i, t in enumerate(inside) if t.type in ("RPAR", "RSQB")), None)
     comma = next((i for i, t in enumerate(inside) if t.type in ("COMMA", "COLON")), None)
-    if ends is None or comma is None or not 0 < comma < ends - 1 or any(_compares(t) for t in inside[:comma]):
+    if ends is None or comma is None or not 0 < comma < ends - 1 or any(_compares(t) for t in inside[:ends]):
         return None
-    if token not in (inside[comma], inside[ends]) or {tokens[opening].type, inside[ends].type} == {"LSQB", "RSQB"}:
+    closed = {tokens[opening].type, inside[ends].type} == {"LSQB", "RSQB"}
+    elsewhere = token is not inside[comma] and token is not inside[ends]
+    if closed or elsewhere or (tokens[opening].type == "LSQB" and _last_bound(failure, opening) is not None):
         return None
     low, high = _text(failure, inside[:comma]), _text(failure, inside[comma + 1 : ends])
     whole = span_of(tokens[opening]).to(span_of(inside[ends]))
-    return failure.error("S025", at=whole, low=low, high=high)
+    edits = (Edit(whole, f"[{low}, {high}]"),)
+    return failure.error("S025", at=whole, edits=edits, low=low, high=high)
 
 
 def _compares(token: Token) -> bool:
@@ -280,7 +287,7 @@ def _stray_interval(failure: Failure) -> Diagnostic | None:
     if token.type == "LSQB":
         opening = failure.at
     elif token.type in ("COMMA", "COLON") and failure.brackets and failure.brackets[-1].type == "LSQB":
-        opening = tokens.index(failure.brackets[-1])
+        opening = failure.place(failure.brackets[-1])
     else:
         return None
     before = tokens[opening - 1]
@@ -301,7 +308,7 @@ def _open_bracket(failure: Failure) -> Diagnostic | None:
     if failure.token is not None and failure.token.type in _CLOSES:
         way = f"write `{closing}` in place of `{failure.token}`"
         return failure.error("S004", labels=(label,), closing=closing, help=way)
-    last = _last_bound(failure, failure.tokens.index(opening)) if closing == "]" else None
+    last = _last_bound(failure, failure.place(opening)) if closing == "]" else None
     before = last if last is not None else failure.tokens[failure.at - 1]
     at = Span(span_of(last).end, span_of(last).end) if last is not None else None
     way = f"write `{closing}` after {quoted(str(before))}"
@@ -334,7 +341,7 @@ def _no_comma(failure: Failure) -> Diagnostic | None:
         return None
     if failure.token is None or failure.token.type not in ("NUMBER", "NAME", "INF"):
         return None
-    tokens, opening = failure.tokens, failure.tokens.index(failure.brackets[-1])
+    tokens, opening = failure.tokens, failure.place(failure.brackets[-1])
     ends = next((i for i in range(failure.at, len(tokens)) if tokens[i].type == "RSQB"), failure.at + 1)
     low, high = _text(failure, tokens[opening + 1 : failure.at]), _text(failure, tokens[failure.at : ends])
     # `[0..5]` reads as the numbers `0.` and `.5`.

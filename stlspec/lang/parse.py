@@ -16,27 +16,18 @@ from lark.parsers.lalr_analysis import Shift
 
 from stlspec.errors import Diagnostic, diagnostic
 from stlspec.lang import grammar
+from stlspec.lang.depth import DEEPEST, too_deep
 from stlspec.lang.hints import Failure, describe
 from stlspec.lang.nodes import (
-    Call,
     Expression,
-    Group,
-    Index,
-    Infix,
-    Interval,
-    LetStatement,
-    Number,
-    Prefix,
     RequirementStatement,
     SignalStatement,
     Statement,
     Text,
     UseStatement,
     VerdictExpectation,
-    bounds,
-    children,
-    post_order,
 )
+from stlspec.lang.repairs import repaired
 from stlspec.lang.statements import (
     NOTHING_LOST,
     STATEMENT_WORDS,
@@ -52,7 +43,6 @@ from stlspec.lang.tree import TreeBuilder, span_of
 from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
 
-DEEPEST = 200
 _TALLEST_STACK = 5000
 _PREFIX_RULES = frozenset({"always", "eventually", "historically", "once", "next", "prev"})
 _INFIX_RULES = frozenset({"until", "since", "unless", "release"})
@@ -65,6 +55,9 @@ _NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
 """Words that after a number begin a statement or a clause, in the wrong place: never units."""
 _CLAUSES = ("SPEC USE TIME DEPENDS ON SCALE BOUND UNIT_WORD IN FROM HOLDS FAILS EPISODE AT MARGIN IS OUTRANKS").split()
 _END = "$END"
+_GUESS = diagnostic("S001", found="", expected="")
+_MOST_REPAIRS = 200
+"""How many broken statements of a text are given a way out that was tried; trying costs time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +117,7 @@ def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
     for tokens in pieces.statements:
         rest = tokens
         while rest:
-            node, problem, used = _parsed(automaton, source, rest, names)
+            node, problem, used = _parsed(automaton, source, rest, names, repair=len(problems) < _MOST_REPAIRS)
             if node is not None:
                 statements.append(node)
             if problem is not None:
@@ -146,13 +139,13 @@ def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
 
 
 def _parsed(
-    automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str]
+    automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str], *, repair: bool
 ) -> tuple[Any, Diagnostic | None, int]:
     """Parse the statement that `tokens` begin with; see `_Feed.run`.
 
     One that is broken ends at the latest where a line looks like a misspelt beginning of the next.
     """
-    node, problem, used = _Feed(automaton, source, tokens, names).run("statement")
+    node, problem, used = _Feed(automaton, source, tokens, names, repair=repair).run("statement")
     if problem is None or problem.span is None or used < len(tokens):
         return node, problem, used
     for i in range(1, len(tokens)):
@@ -160,9 +153,9 @@ def _parsed(
         if begins_like_statement(tokens, i, names) or (behind and stands_before_statement(tokens, i)):
             if node is not None and not behind:
                 continue
-            return (
-                (node, problem, i) if node is not None else _Feed(automaton, source, tokens[:i], names).run("statement")
-            )
+            if node is not None:
+                return node, problem, i
+            return _Feed(automaton, source, tokens[:i], names, repair=repair).run("statement")
     return node, problem, used
 
 
@@ -199,14 +192,23 @@ class _Feed:
     """One walk of the automaton over the tokens of one statement."""
 
     def __init__(
-        self, automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str]
+        self,
+        automaton: _Automaton,
+        source: SourceText,
+        tokens: Sequence[Token],
+        names: frozenset[str],
+        *,
+        trying: bool = False,
+        repair: bool = True,
     ) -> None:
+        """trying: the tokens are a guess, whose faults need no description. repair: ways out are tried."""
         self.automaton = automaton
         self.source = source
         self.tokens = tokens
         arguments = self._arguments()
         self.names = names | arguments if arguments else names
         self.brackets: list[Token] = []
+        self.trying, self.repair = trying, repair
 
     def _arguments(self) -> frozenset[str]:
         """Return the names between the brackets of a `let`: they are names in its body."""
@@ -222,17 +224,18 @@ class _Feed:
 
     def run(self, start: str) -> tuple[Any, Diagnostic | None, int]:
         """Feed the tokens. Returns: the node or None, the diagnostic or None, how many tokens were used."""
+        self.start = start
         self.state = self.automaton.lark.parse_interactive("", start=start).parser_state
         tokens = self.tokens
         if start == "statement" and not self._accepts(tokens[0].type):
-            return None, describe(self._failure(0, beginning=True)), len(tokens)
+            return None, self._problem(0, beginning=True), len(tokens)
         i = 0
         while i < len(tokens):
             token, width = self._read(i)
             if i and start == "statement" and first_on_line(tokens, i) and self._ends_before(token):
                 return self._rest_is_new(i)
             if not self._accepts(token.type):
-                return None, describe(self._failure(i)), len(tokens)
+                return None, self._problem(i), len(tokens)
             self.state.feed_token(token)
             self._note_bracket(token)
             if len(self.state.state_stack) > _TALLEST_STACK or len(self.brackets) > DEEPEST:
@@ -240,9 +243,9 @@ class _Feed:
                 return None, problem, len(tokens)
             i += width
         if not self._accepts(_END):
-            return None, describe(self._failure(len(tokens))), len(tokens)
+            return None, self._problem(len(tokens)), len(tokens)
         node = self._finish()
-        return node, self._too_deep(node), len(tokens)
+        return node, too_deep(self.source, node), len(tokens)
 
     def _rest_is_new(self, i: int) -> tuple[Any, Diagnostic | None, int]:
         """End the statement before token `i`, which begins a line that the statement cannot take.
@@ -250,10 +253,10 @@ class _Feed:
         What follows is a piece of its own: parsed if it begins with a statement's word, else one diagnostic.
         """
         node = self._finish()
-        problem = self._too_deep(node)
+        problem = too_deep(self.source, node)
         if str(self.tokens[i]) in STATEMENT_WORDS:
             return node, problem, i
-        return node, problem or describe(self._failure(i, beginning=True)), len(self.tokens)
+        return node, problem or self._problem(i, beginning=True), len(self.tokens)
 
     def _finish(self) -> Any:
         end = Token.new_borrow_pos(_END, "", self.tokens[-1])
@@ -345,46 +348,25 @@ class _Feed:
         elif token.type in ("RPAR", "RSQB", "RBRACE") and self.brackets:
             self.brackets.pop()
 
+    def _problem(self, i: int, *, beginning: bool = False) -> Diagnostic:
+        """Describe a failure at token `i`, with a way out that works if there is one."""
+        if self.trying:
+            return _GUESS
+        failure = self._failure(i, beginning=beginning)
+        found = describe(failure)
+        return repaired(found, failure, self._parses) if self.repair else found
+
+    def _parses(self, tokens: Sequence[Token]) -> bool:
+        """Tell whether other tokens are one whole statement, or formula."""
+        if not tokens:
+            return False
+        feed = _Feed(self.automaton, self.source, tokens, self.names, trying=True)
+        _, problem, used = feed.run(self.start)
+        return problem is None and used == len(tokens)
+
     def _failure(self, i: int, *, beginning: bool = False) -> Failure:
         row = self.state.parse_conf.states[self.state.state_stack[-1]]
         # After a number a unit always fits: it is named only where nothing else does.
         expected = frozenset(t for t in row if t.isupper() and self._accepts(t))
         expected = expected - {"UNIT"} or expected
         return Failure(self.source, tuple(self.tokens), i, expected, tuple(self.brackets), beginning, self.names)
-
-    def _too_deep(self, statement: Any) -> Diagnostic | None:
-        """Refuse what nests too deep, in bounds and indices too."""
-        pending = [(expression, 0) for expression in _expressions(statement)]
-        while pending:
-            root, outer = pending.pop()
-            depth: dict[int, int] = {}
-            for node in post_order(root):
-                below = max((depth[id(child)] for child in children(node)), default=outer)
-                depth[id(node)] = below + _nests(node)
-                if depth[id(node)] > DEEPEST:
-                    return diagnostic("S007", source=self.source, span=node.span, deepest=DEEPEST)
-                pending += [(bound, outer + 1) for bound in bounds(node)]
-        return None
-
-
-def _nests(node: Expression) -> bool:
-    """Tell whether `node` adds a level: flat chains such as `a and b and c` do not."""
-    match node:
-        case Group() | Prefix() | Call() | Index():
-            return True
-        case Infix(_, operators, _):
-            return operators[0].word in ("implies", "pow")
-    return False
-
-
-def _expressions(statement: Any) -> tuple[Expression, ...]:
-    match statement:
-        case LetStatement():
-            return (statement.body,)
-        case RequirementStatement():
-            return (statement.formula,)
-        case SignalStatement(range=Interval(_, low, high)):
-            return (low, high)
-        case Number() | Group() | Prefix() | Infix() | Call() | Index():
-            return (statement,)
-    return ()

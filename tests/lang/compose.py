@@ -222,7 +222,10 @@ def tree_fault(rng):
     text = f"let p = {formula}"
     if parse(SourceText.of("p", text)).diagnostics:
         return None  # it was written for other declarations
-    once = format_text(text)
+    try:
+        once = format_text(text)
+    except SpecError as error:
+        return f"{error}\n{text}"
     return None if format_text(once) == once else f"not idempotent:\n{text}\n-----\n{once}"
 
 

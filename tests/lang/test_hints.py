@@ -14,10 +14,10 @@ def only(text):
 @pytest.mark.parametrize(
     ("formula", "code", "at", "help_"),
     [
-        ("always[0, 5 (x > 1)", "S004", "(", "write `]` after `5`"),
+        ("always[0, 5 (x > 1)", "S004", "", "write `]` after `5`"),
         ("always[0, x (x > 1)", "S004", "", "write `]` after `x`"),
         ("always[0, 5 x > 1", "S004", "", "write `]` after `5`"),
-        ("always[0, 5 s (x > 1)", "S004", "(", "write `]` after `s`"),
+        ("always[0, 5 s (x > 1)", "S004", "", "write `]` after `s`"),
         ("(x > 1", "S004", "", "write `)` after `1`"),
         ("(x > 1]", "S004", "]", "write `)` in place of `]`"),
         ("x > 1)", "S019", ")", "remove it, or open a bracket before"),
@@ -108,7 +108,7 @@ def test_long_or_unprintable_text_is_shortened_in_messages():
         ('expect a holds on "x" margin > 3', "S001", "expected `>=`"),
         ('expect a holds on "x" at 3 at 4', "S020", "keep one of the two"),
         ("expect a holds on {x: [1, 2]", "S004", "write `}` after `]`"),
-        ("expect a holds on {x: [1, 2}", "S004", "write `]` in place of `}`"),
+        ("expect a holds on {x: [1, 2}", "S004", "write `]` after `2`"),
         ("expect a holds on {x: 1}", "S001", "expected `[`"),
         ("expect", "S002", "expected a name or a quoted text"),
         ("use common.stl", "S045", 'write `"common.stl"`'),

@@ -56,6 +56,11 @@ def bare(node: Expression) -> Expression:
     return node
 
 
+def reads_as_name(node: Index) -> bool:
+    """Tell whether `node` is `x[t]`, and so reads as `x` where nothing declares `t`."""
+    return isinstance(node.index, Name) and node.index.text == HABIT != node.name.text
+
+
 def needs_brackets(parent: Expression, child: Expression, *, last: bool) -> bool:
     """Tell whether brackets are written around `child`, which has none, because tools disagree without them.
 
@@ -173,7 +178,7 @@ class Expressions:
 
     def _index(self, node: Index, index: Doc) -> Doc:
         name = Leaf(node.name.text, node.name.span.start)
-        if not (self.habit and isinstance(node.index, Name) and node.index.text == HABIT):
+        if not (self.habit and reads_as_name(node)):
             return (name, "[", index, Leaf("]", node.span.end - 1))
         if not self.places.has_comment(node.span):
             return name

@@ -11,7 +11,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from stlspec.errors import SpecError, diagnostic
-from stlspec.lang.formatting.expressions import HABIT, NOW, Expressions, bare
+from stlspec.lang.formatting.expressions import HABIT, NOW, Expressions, bare, reads_as_name
 from stlspec.lang.formatting.layout import STEP, Comment, Lines
 from stlspec.lang.formatting.places import Places
 from stlspec.lang.formatting.statements import statement_doc
@@ -132,7 +132,7 @@ def _flat(root: Any, habit: bool) -> Iterator[Any]:
         node = pending.pop()
         if isinstance(node, Group):
             node = bare(node)
-        if isinstance(node, Index) and habit and isinstance(node.index, Name) and node.index.text == HABIT:
+        if isinstance(node, Index) and habit and reads_as_name(node):
             node = node.name
         if isinstance(node, Name):
             yield ("Name", NOW if habit and node.text == HABIT else node.text)
