@@ -184,3 +184,34 @@ def test_a_huge_map_can_be_walked(record: Any, visit: Callable[..., Any], tmp_pa
     click(page, 998, 0)
     steps(page, 1)
     assert page.locator("[data-row]").count() < 4000
+
+
+ATTACK = """async (url) => {
+  // What a page of another site can try, even if it knew the token.
+  const tries = [
+    fetch(url + "view"),
+    fetch(url + "act", { method: "POST", headers: { "Content-Type": "application/json" }, body: STEP }),
+    fetch(url + "act", { method: "POST", mode: "no-cors", headers: { "Content-Type": "text/plain" }, body: STEP }),
+    fetch(url + "finish", { method: "POST", mode: "no-cors", body: "{}" }),
+  ];
+  const answers = await Promise.allSettled(tries);
+  return answers.map((a) => (a.status === "rejected" ? "rejected" : a.value.type + " " + a.value.status));
+}""".replace("STEP", json.dumps(json.dumps({"do": "act", "action": 3, "revision": 0})))
+
+
+def test_a_page_of_another_site_can_neither_read_nor_press(record: Any, visit: Any, browser: Any) -> None:
+    process, url = record(*GRID)
+    page = visit(url)
+    steps(page, 0)
+    foreign = browser.new_page()
+    foreign.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
+    foreign.goto("http://evil.example/")
+    answers = foreign.evaluate(ATTACK, url)
+    assert answers[:2] == ["rejected", "rejected"]
+    assert set(answers[2:]) <= {"opaque 0", "rejected"}, "sent blindly, if at all"
+    foreign.goto(url.replace("127.0.0.1", "localhost"))
+    assert foreign.get_by_role("heading", level=1).count() == 1, "the other name of this machine is as good"
+    foreign.close()
+    assert process.poll() is None
+    page.keyboard.press("ArrowUp")
+    steps(page, 1)
