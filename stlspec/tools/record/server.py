@@ -22,6 +22,7 @@ _LARGEST_REQUEST = 64 * 1024
 _MOST_STREAMS = 16
 _HEARTBEAT = 2.0
 _FAREWELL = 1.0
+_UNVISITED = 3600.0
 PATIENCE = 15.0
 """So many seconds after the last page was closed nobody is expected back; a reload takes one or two."""
 _ASSETS = {
@@ -70,6 +71,7 @@ class PageServer(ThreadingHTTPServer):
         self.closing = False
         self._streams = 0
         self._left: float | None = None
+        self._began: float | None = time.monotonic()
         self.patience = PATIENCE
         super().__init__(("127.0.0.1", port), _Handler)
         self.hosts = {f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost")}
@@ -80,8 +82,10 @@ class PageServer(ThreadingHTTPServer):
         return f"http://127.0.0.1:{self.server_port}/{self.token}/"
 
     def deserted(self) -> bool:
-        """Tell whether every page that was open has been closed for some time."""
+        """Tell whether every page that was open has been closed for some time, or none came for very long."""
         with self.changed:
+            if self._began is not None and time.monotonic() - self._began > _UNVISITED:
+                return True
             return self._left is not None and time.monotonic() - self._left > self.patience
 
     def arrive(self) -> bool:
@@ -90,7 +94,7 @@ class PageServer(ThreadingHTTPServer):
             if self._streams >= _MOST_STREAMS:
                 return False
             self._streams += 1
-            self._left = None
+            self._left = self._began = None
             return True
 
     def leave(self) -> None:

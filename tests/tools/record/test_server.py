@@ -232,6 +232,15 @@ def test_it_is_deserted_some_time_after_the_last_page_was_closed(
     assert served.server.deserted()
 
 
+def test_it_does_not_wait_for_a_first_page_for_ever(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not served.server.deserted()
+    monkeypatch.setattr(module, "_UNVISITED", 0.0)
+    assert served.server.deserted()
+    with stream(served) as link:
+        read_until(link, b"data: 0")
+        assert not served.server.deserted()
+
+
 def test_pages_beyond_the_most_are_turned_away(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_MOST_STREAMS", 1)
     with stream(served) as link:
