@@ -97,7 +97,7 @@ class World:
         try:
             found: Any = self._live.render()
         except Exception as error:  # See `reset`.
-            if find_spec("pygame") is None:
+            if isinstance(error, gymnasium.error.DependencyNotInstalled | ImportError) and find_spec("pygame") is None:
                 way = "install the extra: pip install 'stlspec[record]'"
                 raise self._refusal("rendering its frames needs pygame, which is not installed", way) from error
             raise self._failed(error) from error

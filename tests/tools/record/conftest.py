@@ -52,6 +52,8 @@ class Lamp(gymnasium.Env[Any, Any]):
     def render(self) -> Any:
         if self.fault == "render":
             raise RuntimeError("no bulb")
+        if self.fault == "pygame":
+            raise gymnasium.error.DependencyNotInstalled("pygame is not installed")
         frame = np.zeros((4, 6, 3), dtype=np.uint8)
         frame[..., 0] = int(40 * abs(self._level)) % 256
         return frame

@@ -65,7 +65,7 @@ def test_actions_that_are_no_keys_are_refused() -> None:
 
 
 def test_a_missing_pygame_is_told_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = world_of(LAMP, {"fault": "render"})
+    world = world_of(LAMP, {"fault": "pygame"})
     world.reset(0)
     monkeypatch.setattr("stlspec.tools.record.world.find_spec", lambda name: None)
     with pytest.raises(UsageError) as caught:
