@@ -87,8 +87,8 @@ def chain_job(search: Search, key: Key, order: Sequence[int], watches: Sequence[
     guide = [1 + _GUIDANCE * max(0.0, search.potential[world.place(s)]) for s in range(size)]
     potential = guide * stages
     forbidden = tuple((k * size + s, a) for k in range(stages) for s, a in sorted(search.forbidden))
-    limit, episodes = search.settings.max_steps * stages, search.settings.episodes * stages
-    settings = replace(search.settings, method="plain", max_steps=limit, episodes=episodes, alpha=ALPHA)
+    limit = search.settings.max_steps * stages
+    settings = replace(search.settings, method="plain", max_steps=limit, alpha=ALPHA)
     name = search.fingerprint(task, settings, potential, forbidden)
     return Job(task, settings, tuple(potential), forbidden, search.directory, name, hopeful=True)
 
