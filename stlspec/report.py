@@ -217,6 +217,26 @@ def progress(stream: TextIO) -> Iterator[Progress]:
         yield show
 
 
+@contextmanager
+def files_progress(stream: TextIO, total: int) -> Iterator[Callable[[int, str], None]]:
+    """Show files as a bar on `stream`, with rate and time left; silent where it is no terminal."""
+    console = Console(file=stream)
+    columns = (
+        TextColumn("scoring"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("files, {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Bar(*columns, console=console, transient=True, disable=not stream.isatty()) as bar:
+        task = bar.add_task("scoring", total=total, rate="")
+
+        def show(done: int, rate: str) -> None:
+            bar.update(task, completed=done, rate=rate)
+
+        yield show
+
+
 def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment, out: Path, stream: TextIO) -> None:
     """Print what was learnt: requirements with margins, the path on the map, the training, the files."""
     console = console_for(stream)

@@ -310,7 +310,7 @@ def violating_samples(bundle: BundleData, requirement: Requirement, score: Requi
     if root.op != "always" or root.interval is None:
         witness = score.result.witness
         return [] if witness is None else [witness.sample]
-    trace = score.result.origin.trace
+    trace = score.evaluated.origin.trace
     (values,) = evaluate_nodes(bundle.nodes, root.children, trace)
     low, high = root.interval
     inside = trace.times >= low

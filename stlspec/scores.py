@@ -7,7 +7,7 @@ robustness; a robustness is bounded before it is weighed, so that no requirement
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -25,7 +25,7 @@ from stlspec.markup.figures import notebook
 from stlspec.markup.tables import ScoreRow, score_table
 from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending
-from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict
+from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict, Witness
 
 Label = Literal["good", "incomplete", "bad"]
 LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
@@ -38,17 +38,59 @@ LARGEST_TERM = 1e100
 """A bounded robustness beyond this is refused like an infinite one: sums of such terms could overflow."""
 
 
+_WHOLE = ("label", "reward", "rank")
+"""What is said of a demonstration as a whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """What is kept of a `RequirementResult` when its trace is let go; the fields are as there."""
+
+    robustness: float
+    verdict: Verdict
+    vacuous: bool
+    witness: Witness | None
+    low: float | None
+    high: float | None
+
+
 @dataclass(frozen=True, slots=True)
 class RequirementScore:
     """How one demonstration meets one requirement.
 
-    bounded: the robustness after `bounded_robustness`; 0 if vacuous. result: the evaluation behind it.
-    reason: why and when it fails, in words; "" if it holds.
+    bounded: the robustness after `bounded_robustness`; 0 if vacuous. result: the evaluation behind it, or what is
+    kept of it. reason: why and when it fails, in words; "" if it holds.
     """
 
     bounded: float
-    result: RequirementResult
+    result: RequirementResult | Settled
     reason: str
+
+    @property
+    def evaluated(self) -> RequirementResult:
+        """The evaluation with its trace, for explanations and pictures."""
+        assert isinstance(self.result, RequirementResult), "scores of `many` keep no traces"
+        return self.result
+
+    def to_json(self) -> dict[str, Any]:
+        """Return its part of the `stlspec.score/1` document."""
+        result = self.result
+        witness = result.witness
+        interval = {} if result.low is None or result.high is None else {"low": result.low, "high": result.high}
+        return {
+            "robustness": number(result.robustness),
+            **{key: number(value) for key, value in interval.items()},
+            "bounded": self.bounded,
+            "verdict": result.verdict.value,
+            "vacuous": result.vacuous,
+            "witness": None if witness is None else {"sample": witness.sample, "time": witness.time},
+        }
+
+    def settled(self) -> "RequirementScore":
+        """Return the score without the trace."""
+        r = self.result
+        kept = Settled(r.robustness, r.verdict, r.vacuous, r.witness, r.low, r.high)
+        return RequirementScore(self.bounded, kept, self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +110,13 @@ class DemonstrationScore:
     def _repr_html_(self) -> str:
         """Show the robustness of each requirement over time in a notebook, of the first twenty."""
         head = element("p", element("b", short(self.name)), f" {self.label or ''}")
-        return notebook(head, *(x.result.chart(name) for name, x in list(self.requirements.items())[:20]))
+        return notebook(head, *(x.evaluated.chart(name) for name, x in list(self.requirements.items())[:20]))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return its part of the `stlspec.score/1` document."""
+        requirements = {name: x.to_json() for name, x in self.requirements.items()}
+        whole = dict(zip(_WHOLE, (self.label, self.reward, self.rank), strict=True))
+        return {"name": self.name, **whole, "requirements": requirements}
 
     def row(self, href: str | None = None) -> ScoreRow:
         """Return its row in a table of scores. Args: href: where its name leads."""
@@ -109,23 +157,8 @@ class Ranking:
         }
 
     def _demonstration(self, score: DemonstrationScore) -> dict[str, Any]:
-        whole = {"label": score.label, "reward": score.reward, "rank": score.rank}
-        return {
-            "name": score.name,
-            **(whole if self.at is None else {}),
-            "requirements": {name: self._requirement(x) for name, x in score.requirements.items()},
-        }
-
-    def _requirement(self, score: RequirementScore) -> dict[str, Any]:
-        result = score.result
-        witness = result.witness
-        return {
-            "robustness": number(result.robustness),
-            "bounded": score.bounded,
-            "verdict": result.verdict.value,
-            "vacuous": result.vacuous,
-            "witness": None if witness is None else {"sample": witness.sample, "time": witness.time},
-        }
+        document = score.to_json()
+        return {key: value for key, value in document.items() if self.at is None or key not in _WHOLE}
 
 
 def bounded_robustness(robustness: float, bound: Bounding, scale: float) -> float:
@@ -197,6 +230,7 @@ def evaluate_demonstrations(
     end: End = "clip",
     at: int = 0,
     on_nan: OnNan = "refuse",
+    resample: int | None = None,
 ) -> list[tuple[BoundDemonstration, Evaluation[RequirementResult]]]:
     """Find the signals of each demonstration, and evaluate all requirements over them.
 
@@ -204,7 +238,7 @@ def evaluate_demonstrations(
     """
     evaluated = []
     for demonstration in demonstrations:
-        bound = bind(bundle, demonstration, environment, on_nan)
+        bound = bind(bundle, demonstration, environment, on_nan, resample)
         file = demonstration.file or demonstration.name
         result = evaluate_ending(bundle, bound.signals, bound.time, end=end, at=at, file=file)
         evaluated.append((bound, result))
@@ -219,6 +253,7 @@ def score(
     end: End = "clip",
     at: int | None = None,
     on_nan: OnNan = "refuse",
+    resample: int | None = None,
 ) -> Ranking:
     """Score and rank demonstrations.
 
@@ -227,11 +262,13 @@ def score(
     Args:    bundle: the compiled spec. demonstrations: as `load_demonstrations` gives them.
              environment: computes missing signals from states, for demonstrations that name none.
              end: "clip" or "strict". at: ask about this sample instead of the whole; negative
-             counts from the end. on_nan: "refuse", "hold" or "drop".
+             counts from the end. on_nan: "refuse", "hold" or "drop". resample: a period in nanoseconds.
     Returns: the ranking, in the order of the demonstrations.
     Raises:  DataError: signals are missing or unusable; D860: an infinite robustness under `bound none`.
     """
-    evaluated = evaluate_demonstrations(bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan)
+    evaluated = evaluate_demonstrations(
+        bundle, demonstrations, environment, end=end, at=at or 0, on_nan=on_nan, resample=resample
+    )
     return rank_demonstrations(bundle, evaluated, at=at)
 
 
@@ -245,23 +282,34 @@ def rank_demonstrations(
 
     Paper: Algorithm 1, lines 6, 7 and 12; equation (2). Arguments and errors as for `score`.
     """
-    scores = [
-        {r.name: _requirement_score(r, bound.name, result[r.name]) for r in bundle.requirements}
-        for bound, result in evaluated
-    ]
-    labels = [None if at is not None else _label(bundle, row) for row in scores]
-    rewards = [demonstration_reward(bundle.weights, [x.bounded for x in row.values()]) for row in scores]
-    demonstrations = [
-        DemonstrationScore(bound.name, label, None if label is None else reward, rank, MappingProxyType(row))
-        for (bound, _), label, reward, rank, row in zip(
-            evaluated, labels, rewards, ranks(labels, rewards), scores, strict=True
-        )
-    ]
+    return ranked(bundle, [score_demonstration(bundle, bound, result, at) for bound, result in evaluated], at)
+
+
+def score_demonstration(
+    bundle: BundleData, bound: BoundDemonstration, result: Evaluation[RequirementResult], at: int | None = None
+) -> DemonstrationScore:
+    """Bound, weigh and label what was found of one demonstration; its rank, which needs the others, stays None.
+
+    Paper: Algorithm 1, lines 6 and 7; equation (2). Arguments and errors as for `score`.
+    """
+    row = {r.name: _requirement_score(r, bound.name, result[r.name]) for r in bundle.requirements}
+    label = None if at is not None else _label(bundle, row)
+    reward = demonstration_reward(bundle.weights, [x.bounded for x in row.values()])
+    return DemonstrationScore(bound.name, label, None if label is None else reward, None, MappingProxyType(row))
+
+
+def ranked(bundle: BundleData, scores: Sequence[DemonstrationScore], at: int | None = None) -> Ranking:
+    """Rank scored demonstrations.
+
+    Paper: Algorithm 1, line 12. Arguments as for `score`.
+    """
+    found = ranks([s.label for s in scores], [s.reward or 0.0 for s in scores])
+    demonstrations = tuple(replace(s, rank=rank) for s, rank in zip(scores, found, strict=True))
     requirements = tuple(
         (r.name, r.strength, weight, raw)
         for r, weight, raw in zip(bundle.requirements, bundle.weights, bundle.raw_weights, strict=True)
     )
-    return Ranking(requirements, tuple(demonstrations), at)
+    return Ranking(requirements, demonstrations, at)
 
 
 def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label | None:
@@ -284,7 +332,7 @@ def _requirement_score(requirement: Requirement, demonstration: str, result: Req
     return RequirementScore(bounded, result, reason)
 
 
-def value_text(result: RequirementResult) -> str:
+def value_text(result: RequirementResult | Settled) -> str:
     """Write a robustness for a table: as an enclosure where it is one, and with ∅ where no sample decided."""
     value = shown(result.robustness)
     if result.low is not None and result.high is not None and result.low != result.high:

@@ -11,13 +11,14 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "stlspec"
 ORDER = (
     "source errors lang compiler markup traces semantics documents api envs readers demos sampling binding formulas "
-    "scores rewards wrapper gym learning paper pictures pages report tools cli __main__"
+    "scores many rewards wrapper gym learning paper pictures pages report tools cli __main__"
 ).split()
 LIGHT = ("numpy", "networkx", "gymnasium", "rich", "typer", "lark", "matplotlib")
 LATE = {
     "networkx": {"compiler/graph.py"},
     "matplotlib": {"learning/plots.py", "pictures/drawing.py"},
-    "pyarrow": {"readers/parquet.py"},
+    "pyarrow": {"readers/parquet.py", "many/journal.py"},
+    "ray": {"many/engines.py"},
     "minari": {"readers/minari.py"},
     "gymnasium": {"readers/minari.py"},
     "h5py": {"readers/minari.py"},

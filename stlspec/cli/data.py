@@ -11,6 +11,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stlspec.cli.many import (
+    Address,
+    EngineName,
+    EngineOption,
+    Jobs,
+    KeepGoing,
+    Out,
+    Sharing,
+    expanded,
+    score_in_memory,
+    score_into,
+)
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
 from stlspec.cli.output import Format, ScoreFormat, print_json, warn
 from stlspec.compiler.printing import counted
@@ -49,9 +61,13 @@ class OnNan(StrEnum):
 
 
 Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")]
-Data = Annotated[list[str], typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ")]
+Data = Annotated[list[str], typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ, Parquet")]
 EndOption = Annotated[End, typer.Option("--end", help="what the end of a trace means")]
 OnNanOption = Annotated[OnNan, typer.Option("--on-nan", help="what to do with a NaN")]
+Resample = Annotated[
+    str | None,
+    typer.Option("--resample", metavar="PERIOD", help="take every signal at a steady period, such as 100ms"),
+]
 EnvOption = Annotated[str | None, typer.Option("--env", metavar="ID", help="the environment, by gymnasium id")]
 EnvArgs = Annotated[
     list[str] | None,
@@ -119,41 +135,91 @@ def score(
     page: Annotated[
         Path | None, typer.Option("--report", metavar="OUT.html", help="a page for a browser, one file, with pictures")
     ] = None,
+    resample: Resample = None,
+    jobs: Jobs = None,
+    engine: EngineOption = EngineName.LOCAL,
+    address: Address = None,
+    keep_going: KeepGoing = False,
+    out: Out = None,
     output: Annotated[ScoreFormat, typer.Option("--format", help="how to print")] = ScoreFormat.TEXT,
 ) -> None:
     """Score and rank demonstrations against a spec, and say why they fail."""
-    from stlspec import api, report, scores
-    from stlspec.demos import load_demonstrations
-    from stlspec.pages.score_page import score_page
+    from stlspec import api
+    from stlspec.many.work import job_of
+    from stlspec.sampling import period_of
 
     _check_explained(explain, output)
+    sharing = Sharing(jobs, engine, address, keep_going, out)
+    sharing.check(bool(explain or plot or page), require is not None, [spec, *demonstrations])
     if page is not None:
         _check_page(page, [spec, *demonstrations])
     bundle = api.read(spec, read_params(params))
     environment = demonstration_environment(env, env_arg, map_file, demo_env, demo_map) or environment_from(
         env, env_arg, map_file
     )
-    loaded = load_demonstrations(demonstrations)
+    options: dict[str, Any] = {"end": end.value, "at": at, "on_nan": on_nan.value}
+    options["resample"] = None if resample is None else period_of(resample)
+    if out is not None:
+        summary = score_into(out, job_of(bundle, environment, **options), expanded(demonstrations), sharing)
+        raise typer.Exit(1 if summary.failed else 0)
+    explanations: Any = []
+    left_out = False
+    if sharing.wanted:
+        job = job_of(bundle, environment, **options)
+        ranking, left_out = score_in_memory(job, expanded(demonstrations), sharing)
+    else:
+        ranking, explanations = _score_all(bundle, expanded(demonstrations), environment, options, explain, plot, page)
+    _print_scores(ranking, explanations if explain else None, output)
+    if _gate_fails(ranking, require) or left_out:
+        raise typer.Exit(1)
+
+
+def _score_all(
+    bundle: "Bundle",
+    paths: list[str],
+    environment: "Environment | None",
+    options: dict[str, Any],
+    explain: bool,
+    plot: Path | None,
+    page: Path | None,
+) -> "tuple[Ranking, list[dict[str, Explanation]]]":
+    """Score in this process with all traces at hand, draw what is wanted, and explain."""
+    from stlspec import scores
+    from stlspec.binding import columns_of
+    from stlspec.demos import load_demonstrations
+    from stlspec.pages.score_page import score_page
+
+    loaded = load_demonstrations(paths, columns_of(bundle, environment))
     draw = _plotter(plot, len(loaded)) if plot is not None else None
-    ranking = scores.score(bundle, loaded, environment, end=end.value, at=at, on_nan=on_nan.value)
+    ranking = scores.score(bundle, loaded, environment, **options)
     explanations = _explanations(bundle, ranking) if explain or draw else []
     if draw is not None:
         draw(bundle, ranking, explanations)
     if page is not None:
         _write_page(page, score_page(bundle, ranking, loaded, environment))
+    return ranking, explanations
+
+
+def _print_scores(ranking: "Ranking", explanations: "list[dict[str, Explanation]] | None", output: ScoreFormat) -> None:
+    from stlspec import report
+
     if output is ScoreFormat.JSON:
-        print_json(_with_explanations(ranking, explanations) if explain else ranking.to_json())
+        print_json(ranking.to_json() if explanations is None else _with_explanations(ranking, explanations))
     elif output is ScoreFormat.CSV:
         print(report.ranking_csv(ranking), end="")
     else:
         report.print_ranking(ranking, sys.stdout)
-        if explain:
+        if explanations is not None:
             _print_explanations(ranking, explanations)
+
+
+def _gate_fails(ranking: "Ranking", require: Gate | None) -> bool:
+    """Say how many demonstrations fail the gate, if any."""
     failed = _failed(ranking, require) if require is not None else 0
     if failed:
         what = f"{failed} of {counted(len(ranking.demonstrations), 'demonstration')} failed `--require {require}`"
         warn([diagnostic("D881", what=what, help="the result above says why")])
-        raise typer.Exit(1)
+    return failed > 0
 
 
 def _check_explained(explain: bool, output: ScoreFormat) -> None:
@@ -181,7 +247,7 @@ def _explanations(bundle: "Bundle", ranking: "Ranking") -> "list[dict[str, Expla
     """Explain every requirement on every demonstration."""
     from stlspec.semantics.explain import explain
 
-    return [{n: explain(bundle, n, x.result) for n, x in d.requirements.items()} for d in ranking.demonstrations]
+    return [{n: explain(bundle, n, x.evaluated) for n, x in d.requirements.items()} for d in ranking.demonstrations]
 
 
 def _with_explanations(ranking: "Ranking", explanations: "list[dict[str, Explanation]]") -> dict[str, Any]:

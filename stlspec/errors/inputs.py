@@ -320,6 +320,30 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "D848",
+        "work that could not be shared out",
+        "error",
+        message="the work could not be shared out: {what}",
+        help="with less memory in use, or with fewer --jobs than {jobs}, the same command goes on where it stopped",
+        explanation="Files are scored in processes of their own, or on a Ray cluster. A process that the system ends, "
+        "for want of memory say, takes its file with it; what was done before is kept.",
+        bad="# --jobs 64 on a machine of 4 GB",
+        good="# --jobs 2",
+        kind="shown",
+    ),
+    Code(
+        "D849",
+        "the remains of other work",
+        "error",
+        message="this belongs to another run, or is damaged, and stands in the way of {out}",
+        help="choose another --out, or remove it together with {partial}",
+        explanation="An interrupted run goes on where it stopped if the spec, the options and the files are the same. "
+        "What another run left is not thrown away unasked.",
+        bad="# --out scores.jsonl, interrupted, and again with other files",
+        good="# the same command again",
+        kind="shown",
+    ),
+    Code(
         "D847",
         "a format whose extra is not installed",
         "error",

@@ -33,7 +33,7 @@ def demonstration_section(
     """
     whole = score
     score = replace(score, requirements=_chosen(score))
-    explanations = {name: explain(bundle, name, found.result) for name, found in score.requirements.items()}
+    explanations = {name: explain(bundle, name, found.evaluated) for name, found in score.requirements.items()}
     label = score.label or ("undecided" if score.reward is None and score.rank is None else "")
     head = [element("span", short(score.name), class_="name"), " "]
     if label:

@@ -91,7 +91,7 @@ def picture_of(bundle: BundleData, score: DemonstrationScore, explanations: Mapp
     Args:    bundle: the compiled spec. score: of the demonstration. explanations: of each requirement.
     Returns: the picture as data.
     """
-    results = {name: found.result for name, found in score.requirements.items()}
+    results = {name: found.evaluated for name, found in score.requirements.items()}
     if not results:
         return Picture(plain(score.name), "no requirements", score.label, np.zeros(0), bundle.time.unit, (), ())
     trace = next(iter(results.values())).origin.trace
