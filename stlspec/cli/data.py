@@ -160,7 +160,9 @@ def score(
     options: dict[str, Any] = {"end": end.value, "at": at, "on_nan": on_nan.value}
     options["resample"] = None if resample is None else period_of(resample)
     if out is not None:
-        summary = score_into(out, job_of(bundle, environment, **options), expanded(demonstrations), sharing)
+        summary = score_into(
+            out, job_of(bundle, environment, **options), expanded(demonstrations), sharing, output is ScoreFormat.JSON
+        )
         raise typer.Exit(1 if summary.failed else 0)
     explanations: Any = []
     left_out = False

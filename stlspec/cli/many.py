@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stlspec.cli.options import spare_inputs
-from stlspec.cli.output import warn
+from stlspec.cli.output import print_json, warn
 from stlspec.compiler.printing import counted
 from stlspec.errors import UsageError, diagnostic
 
@@ -110,15 +110,19 @@ def score_in_memory(job: "Job", paths: list[str], sharing: Sharing) -> tuple["Ra
     return ranked(job.bundle, scores, job.at), bool(problems)
 
 
-def score_into(out: Path, job: "Job", paths: list[str], sharing: Sharing) -> "Summary":
+def score_into(out: Path, job: "Job", paths: list[str], sharing: Sharing, as_json: bool) -> "Summary":
     """Score files into a file, and say what came of it."""
+    from stlspec.many.journal import SCHEMA
     from stlspec.many.run import score_many
 
     with _progress(len(paths), sharing.keep_going) as told:
         summary = score_many(job, paths, out, sharing.run(), keep_going=sharing.keep_going, told=told)
+    if as_json:
+        counts = {"files": summary.files, "demonstrations": summary.demonstrations, "failed": summary.failed}
+        print_json({"schema": SCHEMA, "out": str(out), **counts})
+        return summary
     failed = f"; {counted(summary.failed, 'file')} left out" if summary.failed else ""
-    said = f"{out}: {counted(summary.demonstrations, 'demonstration')} of {counted(summary.files, 'file')}{failed}"
-    print(said, file=sys.stderr)
+    print(f"{out}: {counted(summary.demonstrations, 'demonstration')} of {counted(summary.files, 'file')}{failed}")
     return summary
 
 

@@ -45,7 +45,7 @@ def test_bad_files_are_left_out_and_told(folder):
     found = run(folder, "bad.csv", "d1.csv", "--keep-going", "--out", "r.jsonl")
     assert found.returncode == 1
     assert "D806" in found.stderr
-    assert "r.jsonl: 1 demonstration of 2 files; 1 file left out" in found.stderr
+    assert "r.jsonl: 1 demonstration of 2 files; 1 file left out" in found.stdout
     assert json.loads((folder / "r.jsonl").read_text())["name"] == "d1.csv"
     assert run(folder, "bad.csv", "d1.csv", "--out", "r2.jsonl").returncode == 2
 
