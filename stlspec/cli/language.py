@@ -1,9 +1,8 @@
-"""The commands on specs themselves: check, explain, compile, graph.
+"""The commands on specs themselves: explain, compile, graph.
 
 In: spec files. Out: diagnostics, bundles, the DAG. `check` and `explain` load nothing heavy.
 """
 
-import sys
 from difflib import get_close_matches
 from pathlib import Path
 from textwrap import fill
@@ -12,53 +11,10 @@ from typing import Annotated
 import typer
 
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
-from stlspec.cli.output import Format, GraphFormat, error_document, print_diagnostics, print_json
+from stlspec.cli.output import Format, GraphFormat, print_json
 from stlspec.compiler import bundle_file, files
-from stlspec.compiler.compiling import check_source
 from stlspec.compiler.printing import counted
-from stlspec.errors import CATALOGUE, Diagnostic, InputError, UsageError, diagnostic
-
-
-def check(
-    specs: Annotated[list[Path], typer.Argument(metavar="FILE...", help="spec files, or compiled bundles")],
-    params: Params = None,
-    output: FormatOption = Format.TEXT,
-) -> None:
-    """Report everything that is wrong with spec files, in one run."""
-    values = read_params(params)
-    found: list[Diagnostic] = []
-    exit_code = 0
-    for path in specs:
-        try:
-            found += _checked(path, values)
-        except InputError as error:
-            found += error.diagnostics
-            exit_code = 2
-    found = list(dict.fromkeys(found))  # a file that is checked and used by another speaks once
-    errors = sum(d.severity == "error" for d in found)
-    exit_code = max(exit_code, 1 if errors else 0)
-    if output is Format.JSON:
-        document = {"schema": "stlspec.check/1", "diagnostics": [d.to_json() for d in found]}
-        print_json(error_document(exit_code, found) if exit_code == 2 else document)
-    else:
-        print_diagnostics(found, sys.stdout)
-        print(_summary(errors, len(found) - errors, len(specs)))
-    raise typer.Exit(exit_code)
-
-
-def _checked(path: Path, values: dict[str, str]) -> tuple[Diagnostic, ...]:
-    data = files.read_bytes(path, bundle_file.LARGEST)
-    if files.looks_like_bundle(path, data):
-        files.read_spec(path, values)
-        return ()
-    return check_source(files.decode(data, str(path)), values, files.read_used).diagnostics
-
-
-def _summary(errors: int, warnings: int, n_files: int) -> str:
-    if not errors and not warnings:
-        return f"{counted(n_files, 'file')} checked, nothing to report"
-    parts = [counted(n, noun) for n, noun in ((errors, "error"), (warnings, "warning")) if n]
-    return f"{' and '.join(parts)} in {counted(n_files, 'file')}"
+from stlspec.errors import CATALOGUE, UsageError, diagnostic
 
 
 def explain(

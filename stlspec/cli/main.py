@@ -15,7 +15,18 @@ from typing import Annotated, Any
 import typer
 
 from stlspec import __version__
-from stlspec.cli import conformance, data, formatting, importing, language, monitoring, recording, testing, training
+from stlspec.cli import (
+    checking,
+    conformance,
+    data,
+    formatting,
+    importing,
+    language,
+    monitoring,
+    recording,
+    testing,
+    training,
+)
 from stlspec.cli.options import expand_many
 from stlspec.cli.output import error_document, print_diagnostics, print_json
 from stlspec.errors import Diagnostic, StlspecError, UsageError, diagnostic
@@ -43,7 +54,7 @@ def build() -> typer.Typer:
     names = {"help_option_names": ["-h", "--help"]}
     app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings=names)
     app.callback()(_root)
-    app.command("check")(language.check)
+    app.command("check")(checking.check)
     app.command("fmt")(formatting.fmt)
     app.command("explain")(language.explain)
     app.command("compile")(language.compile_spec)

@@ -23,6 +23,15 @@ class Format(StrEnum):
     JSON = "json"
 
 
+class CheckFormat(StrEnum):
+    """How diagnostics are printed: for a person, or for programs that know JSON, SARIF, or GitHub Actions."""
+
+    TEXT = "text"
+    JSON = "json"
+    SARIF = "sarif"
+    GITHUB = "github"
+
+
 class ScoreFormat(StrEnum):
     """How scores are printed."""
 

@@ -6,6 +6,7 @@ and every expression bottom-up, so that neither a deep formula nor a chain of a 
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import PurePath
 from types import MappingProxyType
@@ -15,7 +16,7 @@ from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.dependencies import ancestors, dependency_weights, softmax
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.inference import NOW, SAME_UNIT
-from stlspec.compiler.ir import Builder, Interval, reachable
+from stlspec.compiler.ir import Builder, Interval, Node, reachable
 from stlspec.compiler.model import Instance, Model
 from stlspec.compiler.quantities import SAME, conversion, scaled
 from stlspec.lang.nodes import (
@@ -37,6 +38,8 @@ from stlspec.lang.nodes import (
 from stlspec.lang.units import Dimension
 
 _UNBOUNDED: Interval = (0, None)
+_UNKNOWN: Interval = (1, None)
+"""Stands for bounds that a param without a value leaves open, where only a text is judged: it may hold no sample."""
 _COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
 
 
@@ -101,6 +104,31 @@ def _one_line(text: str) -> str:
     return " ".join(" ".join(lines).split())
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sketch:
+    """The formulas of a model as nodes of one DAG, whether or not its params have values.
+
+    An open param is a `signal` node: what holds for all its values holds for any. made: the node of each expression
+    outside templates, by its `id`. roots: by requirement. exact: no interval is left open by a param.
+    """
+
+    nodes: tuple[Node, ...]
+    made: Mapping[int, int]
+    roots: Mapping[str, int]
+    exact: bool
+
+
+def sketch(model: Model) -> Sketch:
+    """Lower a checked model for analysis. Not in the paper: lints look at formulas before params are bound."""
+    lowering = _Lowering(model)
+    for name in model.let_order:
+        let = model.declared.lets[name]
+        if not let.arguments:
+            lowering.names[name] = lowering.expression(let.body)
+    roots = {name: lowering.expression(r.formula) for name, r in model.declared.requirements.items()}
+    return Sketch(tuple(lowering.builder.nodes), lowering.made, roots, not lowering.is_open)
+
+
 class _Lowering:
     """Makes nodes of the DAG from expressions.
 
@@ -115,6 +143,8 @@ class _Lowering:
         self.made: dict[int, int] = {}
         self.at: Model | Instance = model
         self.arguments: Mapping[str, int] = {}
+        self.is_open = False
+        """Whether the bounds of some interval have no value."""
         self._instances: dict[int, int] = {}
 
     def expression(self, root: Expression) -> int:
@@ -155,6 +185,8 @@ class _Lowering:
         if name in self.names:
             return self.names[name]
         signal = self.model.signals.get(name)
+        if name in self.model.declared.params:
+            return self.builder.add("signal", value=name)
         if signal is None:
             assert name in NOW
             return self.builder.add("now")
@@ -204,7 +236,11 @@ class _Lowering:
         return self._instances[id(instance)]
 
     def _interval(self, operator: Operator) -> Interval:
-        return self.at.intervals[id(operator.interval)] if operator.interval is not None else _UNBOUNDED
+        if operator.interval is None:
+            return _UNBOUNDED
+        ticks = self.at.intervals.get(id(operator.interval))
+        self.is_open |= ticks is None
+        return _UNKNOWN if ticks is None else ticks
 
     def _not(self, operand: int) -> int:
         below = self.builder.nodes[operand]

@@ -82,10 +82,11 @@ def _text(
 def _interval_text(interval: Interval | None, time: TimeBase) -> str:
     if interval is None or interval == _UNBOUNDED:
         return ""
-    return f"[{', '.join(_ticks_text(bound, time) for bound in interval)}]"
+    return f"[{', '.join(ticks_text(bound, time) for bound in interval)}]"
 
 
-def _ticks_text(ticks: int | None, time: TimeBase) -> str:
+def ticks_text(ticks: int | None, time: TimeBase) -> str:
+    """Return a time in ticks as a spec would say it. Not in the paper: for messages."""
     if ticks is None:
         return "inf"
     number = number_text(ticks / time.ticks_per_unit)

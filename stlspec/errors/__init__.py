@@ -7,7 +7,20 @@ D8xx data and environments, X9xx internal.
 from types import MappingProxyType
 from typing import Any
 
-from stlspec.errors import data, files, graph, inputs, intervals, learning, monitoring, names, recording, syntax, types
+from stlspec.errors import (
+    data,
+    files,
+    graph,
+    inputs,
+    intervals,
+    learning,
+    lints,
+    monitoring,
+    names,
+    recording,
+    syntax,
+    types,
+)
 from stlspec.errors.model import (
     BundleError,
     Code,
@@ -43,7 +56,7 @@ __all__ = [
     "render",
 ]
 
-_PARTS = (syntax, names, types, intervals, graph, files, data, inputs, learning, monitoring, recording)
+_PARTS = (syntax, names, types, intervals, graph, lints, files, data, inputs, learning, monitoring, recording)
 
 CATALOGUE = MappingProxyType({row.code: row for part in _PARTS for row in part.CODES})
 """Every code with its row, in the order of the codes."""

@@ -48,6 +48,18 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "S094",
+        "settings that cannot be used",
+        "error",
+        message="the settings of stlspec cannot be used: {problem}",
+        help="{help}",
+        explanation="`[tool.stlspec]` of the nearest pyproject.toml, upward from a spec, says which warnings are "
+        "reported: select, ignore (codes, or the beginning of codes), levels (off, warning, error) and deny.",
+        bad='[tool.stlspec]\nignore = ["L999"]\n',
+        good='[tool.stlspec]\nignore = ["L615", "G5"]\nlevels = { L605 = "error" }\n',
+        kind="shown",
+    ),
+    Code(
         "B701",
         "no bundle",
         "error",

@@ -27,7 +27,7 @@ CODES: tuple[Code, ...] = (
         explanation="Future operators look ahead from the present sample, past operators back; the bounds are "
         "distances in time.",
         bad=_D + "hard safe: always[-1, 2] (d > 1)\n",
-        good=_D + "hard safe: historically[0, 1] (d > 1)\n",
+        good=_D + "hard safe: always historically[0, 1] (d > 1)\n",
     ),
     Code(
         "I403",

@@ -26,7 +26,7 @@ CODES: tuple[Code, ...] = (
         help="complete the statement here",
         explanation="A statement runs on over lines until the next one begins. This one ends too early.",
         bad=_D + "hard safe: always (d > 1) and\n",
-        good=_D + "hard safe: always (d > 1) and d < 9\n",
+        good=_D + "hard safe: always (d > 1 and d < 9)\n",
     ),
     Code(
         "S003",
@@ -102,7 +102,7 @@ CODES: tuple[Code, ...] = (
         explanation="`until`, `since`, `unless`, `release` and `iff` have no agreed order among themselves: tools "
         "read `a until b until c` differently. Brackets are required.",
         bad=_D + "hard safe: d > 1 until d > 2 until d > 3\n",
-        good=_D + "hard safe: (d > 1 until d > 2) until d > 3\n",
+        good=_D + "soft safe: (d > 1 until d > 2) until d > 3\n",
     ),
     Code(
         "S010",
@@ -187,7 +187,7 @@ CODES: tuple[Code, ...] = (
         help="write `{meant}`",
         explanation="A word close to one of the language stands where only that word would fit.",
         bad=_D + "hard safe: eventualy[0, 5] (d > 1)\n",
-        good=_D + "hard safe: eventually[0, 5] (d > 1)\n",
+        good=_D + "soft safe: eventually[0, 5] (d > 1)\n",
     ),
     Code(
         "S019",
@@ -250,7 +250,7 @@ CODES: tuple[Code, ...] = (
         explanation="`next` and `prev` look at one sample, `not` at the present one, and a signal is no operator: "
         "none of them has a window.",
         bad=_D + "hard safe: next[0, 5] (d > 1)\n",
-        good=_D + "hard safe: eventually[0, 5] (d > 1)\n",
+        good=_D + "soft safe: eventually[0, 5] (d > 1)\n",
     ),
     Code(
         "S025",

@@ -68,7 +68,7 @@ CODES: tuple[Code, ...] = (
         help="{help}",
         explanation="A range gives the least and the greatest value of a real signal.",
         bad="signal d in [5, 1]\nhard safe: always (d > 1)\n",
-        good="signal d in [1, 5]\nhard safe: always (d > 1)\n",
+        good="signal d in [1, 5]\nhard safe: always (d > 2)\n",
     ),
     Code(
         "T207",

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from stlspec.compiler.bundle import BundleData, Signal
 from stlspec.compiler.ir import COMPARISONS, Node
+from stlspec.compiler.ranges import value_ranges
 from stlspec.errors import DataError
 from stlspec.semantics.chains import Link, Values, bearing_samples
 from stlspec.semantics.changes import Change, direction, flipping_changes
-from stlspec.semantics.online.ranges import value_ranges
 from stlspec.semantics.relaxation import Relaxation, memory, signal_nodes
 from stlspec.semantics.robustness import evaluate_nodes
 from stlspec.traces import Trace

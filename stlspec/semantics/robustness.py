@@ -13,15 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stlspec.compiler.ir import COMPARISONS, REAL, Node, reachable
+from stlspec.compiler.ranges import TIE as TIE
 from stlspec.semantics import windows
 from stlspec.semantics.expressions import expression_values
 from stlspec.semantics.windows import Grid
 from stlspec.traces import Trace
 
 Floats = NDArray[np.float64]
-
-TIE = 5e-324
-"""What a predicate on its bound counts as: the smallest positive number."""
 
 _TEMPORAL: dict[str, Callable[..., Floats]] = {
     "always": windows.always,

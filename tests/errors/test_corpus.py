@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from stlspec.compiler.compiling import check_source
+from stlspec.compiler.review import review_source
 from stlspec.source import SourceText
 
 CORPUS = sorted((Path(__file__).parents[1] / "corpus").glob("*.stl"))
@@ -25,7 +25,7 @@ def read(name):
 
 
 def found_in(text):
-    return check_source(SourceText.of("corpus.stl", text)).diagnostics
+    return review_source(SourceText.of("corpus.stl", text)).diagnostics
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda p: p.stem)
@@ -64,7 +64,7 @@ def follow(text, problem):
 def test_following_the_help_literally_makes_the_file_clean(name):
     text = EXPECTED.sub("", read(name))
     for _ in range(5):
-        problems = found_in(text)
+        problems = [problem for problem in found_in(text) if problem.code[0] != "L"]
         if not problems:
             return
         text = follow(text, problems[0])

@@ -6,8 +6,8 @@ from itertools import product
 import pytest
 
 import stlspec
+from stlspec.compiler.ranges import value_ranges
 from stlspec.semantics.chains import values_below
-from stlspec.semantics.online.ranges import value_ranges
 from stlspec.semantics.relaxation import Relaxation, memory, signal_nodes
 
 

@@ -79,6 +79,16 @@ def needs_brackets(parent: Expression, child: Expression, *, last: bool) -> bool
     return _reaches_on(child) and not (last and not any(_reaches_on(bare(x)) for x in parent.operands[:-1]))
 
 
+def tools_disagree(parent: Expression, child: Expression, *, last: bool) -> bool:
+    """Tell whether `child` of `parent`, written without brackets, is read in another way by other tools.
+
+    Of what `needs_brackets` is true of, comparisons under an operator and `and` under `or` are read alike.
+    """
+    if not isinstance(parent, Infix) or not needs_brackets(parent, child, last=last):
+        return False
+    return not (isinstance(child, Infix) and child.operators[0].word == "and" and parent.operators[0].word == "or")
+
+
 def _reaches_on(node: Expression) -> bool:
     """Tell whether `node` begins with a temporal operator, which in other tools may cover what follows."""
     while isinstance(node, Prefix):

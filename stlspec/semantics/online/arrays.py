@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stlspec.compiler.ir import Node
+from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics import windows
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF, Range
 from stlspec.semantics.windows import Grid
 
 Floats = NDArray[np.float64]

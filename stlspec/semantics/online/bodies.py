@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from stlspec.compiler.ir import FUTURE, Interval
+from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF, Range
 
 _MOST_CLAUSES = 16
 _LARGEST = 64

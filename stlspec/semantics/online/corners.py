@@ -12,9 +12,9 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from stlspec.compiler.ir import Interval
+from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics.online.nested import FOREVER, Enclosure
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF, Range
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, number, numbers, optional, row_of, whole
 
 Table = list[float]

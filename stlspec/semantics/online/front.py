@@ -15,9 +15,9 @@ import numpy as np
 from stlspec.compiler.bundle import Signal
 from stlspec.compiler.ir import COMPARISONS, REAL, Node
 from stlspec.compiler.printing import expression_text, number_text
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.samples import as_boolean, as_real, missing, outside, refuse
 from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
 from stlspec.semantics.robustness import TIE, needed_nodes

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stlspec.compiler.horizon import horizons
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.arrays import Stretch, enclosures, needed, stretch, three
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.saving import Remembering, State, Unsound, number, optional, row_of, whole
 from stlspec.semantics.online.tape import Tape, reach_back
 

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, ClassVar
 
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.past import Row, Since, Sliding
-from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, line_of, number, optional, rows, whole
 
 Sink = Callable[[int, float, int], None]

@@ -15,8 +15,8 @@ from itertools import pairwise
 from typing import ClassVar
 
 from stlspec.compiler.ir import Interval
+from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF, Range
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, number, row_of, whole
 
 Enclosure = tuple[float, float, float]

@@ -8,8 +8,8 @@ Everything known is one clamp x -> max(L, min(H, x)) of the value that the rest 
 from typing import Any, ClassVar
 
 from stlspec.compiler.ir import Interval
+from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF, Range
 from stlspec.semantics.online.saving import Remembering, State, Unsound, number, optional, row_of, whole
 
 Enclosure = tuple[float, float, float]

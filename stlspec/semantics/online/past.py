@@ -9,7 +9,7 @@ from collections import deque
 from itertools import pairwise
 from typing import ClassVar
 
-from stlspec.semantics.online.ranges import INF
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.saving import Remembering, State, Unsound, line_of, number, whole
 
 Row = tuple[int, float]

@@ -12,7 +12,7 @@ from typing import Literal
 
 from stlspec.compiler.bundle import BundleData, TimeBase
 from stlspec.compiler.ir import COMPARISONS, FUTURE, REAL, Node
-from stlspec.semantics.online.ranges import INF, WHOLE, Range, value_ranges
+from stlspec.compiler.ranges import INF, WHOLE, Range, value_ranges
 
 DEEPEST = 150
 """Deeper formulas are computed by loops only; each level takes some of the stack otherwise."""

@@ -11,6 +11,7 @@ from functools import partial
 from typing import Any
 
 from stlspec.compiler.ir import Interval
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.bodies import (
     Clause,
     Settled,
@@ -26,7 +27,6 @@ from stlspec.semantics.online.general import General, inputs_of
 from stlspec.semantics.online.nested import Nested
 from stlspec.semantics.online.outermost import Always, First, Starting, Until
 from stlspec.semantics.online.plan import DEEPEST, Plan
-from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.unending import Signed, Unending, unending_operators
 
 MOST_UNKNOWNS = 4

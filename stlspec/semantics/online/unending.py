@@ -9,10 +9,10 @@ and max of these, fixed by its corners, and a sample replaces each number by wha
 from collections.abc import Sequence
 from typing import ClassVar
 
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.corners import Table, value_at
 from stlspec.semantics.online.nested import Enclosure
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.ranges import INF
 from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
 
 Signed = tuple[int, bool]

@@ -4,8 +4,8 @@ import pytest
 
 from stlspec.compiler.bundle import Requirement, Signal, TimeBase
 from stlspec.compiler.ir import Builder, Node
+from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.plan import make_plan
-from stlspec.semantics.online.ranges import INF
 from tests.semantics.online.cases import PERIOD, STAMPS, STEP, bundle_of
 
 

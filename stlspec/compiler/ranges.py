@@ -11,11 +11,13 @@ from itertools import product
 
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.ir import COMPARISONS, REAL, Node
-from stlspec.semantics.robustness import TIE
 
 Range = tuple[float, float]
 
 INF = math.inf
+TIE = 5e-324
+"""What a predicate exactly on its bound counts: plus this if it holds, minus this if not."""
+
 WHOLE: Range = (-INF, INF)
 
 _HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})

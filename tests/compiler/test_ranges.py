@@ -7,8 +7,8 @@ import pytest
 
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.ir import REAL, Builder
+from stlspec.compiler.ranges import INF, WHOLE, value_ranges
 from stlspec.errors import DataError
-from stlspec.semantics.online.ranges import INF, WHOLE, value_ranges
 from stlspec.semantics.robustness import TIE, evaluate_nodes
 from stlspec.traces import make_trace
 from tests.strategies import random_expression
