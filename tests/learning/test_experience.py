@@ -18,6 +18,10 @@ OPTIMUM = 0.7442
 """The largest probability of reaching the goal of this lake within 100 steps, by value iteration over time."""
 
 
+class KilledError(Exception):
+    """Stands for a signal."""
+
+
 def test_slippery_ice_is_learned_nearly_as_well_as_it_can_be(kit):
     world = make_environment("FrozenLake-v1", None, ROWS)
     path = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (3, 2), (3, 3)]
@@ -38,9 +42,6 @@ def test_slippery_ice_is_learned_nearly_as_well_as_it_can_be(kit):
 
 def test_a_killed_run_resumes_and_the_files_say_what_is_known(tmp_path, kit):
     world = make_environment("FrozenLake-v1", None, ROWS)
-
-    class KilledError(Exception):
-        pass
 
     def progress(episodes, _all, _steps):
         if episodes == 100:
@@ -67,6 +68,26 @@ def test_a_killed_run_resumes_and_the_files_say_what_is_known(tmp_path, kit):
     assert result["requirements"]["avoid"]["verdict"] is None
     assert 0 <= result["requirements"]["reach"]["probability"] <= 1
     assert result["training"]["env_steps_to_success"] is None
+
+
+def test_a_living_environment_resumes_bit_for_bit_too(tmp_path, monkeypatch):
+    monkeypatch.setattr("stlspec.learning.experience.CHECKPOINT_SECONDS", 0.0)
+    car = make_environment("MountainCar-v0")
+
+    def stop(episodes, _all, _steps):
+        if episodes == 50:
+            raise KilledError
+
+    def run(out, progress=None):
+        options = {"method": "plain", "bins": (8, 8), "episodes": 100, "max_steps": 60, "out": out}
+        return learn(api.compile(CAR), car, progress=progress, **options)
+
+    with pytest.raises(KilledError):
+        run(tmp_path / "a", stop)
+    again, whole = run(tmp_path / "a"), run(tmp_path / "b")
+    assert again.policy.q == whole.policy.q
+    assert again.log == whole.log
+    assert again.satisfaction == whole.satisfaction
 
 
 CAR = "signal position in [-1.2, 0.6]\nsoft up: eventually (position >= -0.3)"
