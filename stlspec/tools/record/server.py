@@ -11,6 +11,7 @@ import json
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import Any, Protocol
@@ -87,6 +88,10 @@ class PageServer(ThreadingHTTPServer):
             if self._began is not None and time.monotonic() - self._began > _UNVISITED:
                 return True
             return self._left is not None and time.monotonic() - self._left > self.patience
+
+    def news(self, told: int) -> bool:
+        """Tell whether there is something that a page which knows revision `told` does not know."""
+        return self.closing or self.sitting.revision != told
 
     def arrive(self) -> bool:
         """Count a page that listens; False if there are too many."""
@@ -225,11 +230,12 @@ class _Handler(BaseHTTPRequestHandler):
             self.close_connection = True
             self._head(200, {"Content-Type": "text/event-stream", "Connection": "close"})
             while not server.closing:
-                self.wfile.write(f"data: {server.sitting.revision}\n\n".encode())
+                told = server.sitting.revision
+                self.wfile.write(f"data: {told}\n\n".encode())
                 self.wfile.flush()
                 with server.changed:
-                    if not server.closing:
-                        server.changed.wait(_HEARTBEAT)
+                    # What changed while the page was being told woke nobody, so it is looked at before waiting.
+                    server.changed.wait_for(partial(server.news, told), _HEARTBEAT)
             self.wfile.write(b"event: end\ndata: end\n\n")
         except OSError:
             return  # The page was closed.

@@ -212,6 +212,18 @@ def test_the_stream_tells_revisions_at_once_and_the_end(served: Served) -> None:
         read_until(link, b"event: end")
 
 
+def test_a_change_while_the_page_is_being_told_is_not_slept_through(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_HEARTBEAT", 60.0)
+    told = iter([0])
+    # Whoever reads the revision first sees 0, everybody after that 1: it changed before the stream could wait.
+    monkeypatch.setattr(Counter, "revision", property(lambda _: next(told, 1)))
+    with stream(served) as link:
+        found = read_until(link, b"data: 1\n\n")  # the link itself waits 5 s at most
+    assert b"data: 0\n\n" in found
+
+
 def test_it_is_deserted_some_time_after_the_last_page_was_closed(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
