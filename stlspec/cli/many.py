@@ -33,7 +33,7 @@ class EngineName(StrEnum):
     RAY = "ray"
 
 
-Jobs = Annotated[int | None, typer.Option("--jobs", metavar="N", min=1, help="score files in N processes")]
+Jobs = Annotated[int | None, typer.Option("--jobs", metavar="N", min=1, max=256, help="score files in N processes")]
 EngineOption = Annotated[EngineName, typer.Option("--engine", help="processes of this machine, or a Ray cluster")]
 Address = Annotated[str | None, typer.Option("--address", metavar="HOST:PORT", help="of the Ray cluster")]
 KeepGoing = Annotated[

@@ -323,7 +323,7 @@ CODES: tuple[Code, ...] = (
         "D847",
         "a format whose extra is not installed",
         "error",
-        message="reading {format} needs a package that is not installed",
+        message="{what} needs a package that is not installed",
         help="pip install 'stlspec[{extra}]'",
         explanation="Formats that need a large library come in extras, so that nobody installs what they do not use.",
         bad="# stlspec score spec.stl log.parquet, without the extra",
@@ -348,8 +348,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="this belongs to another run, or is damaged, and stands in the way of {out}",
         help="choose another --out, or remove it together with {partial}",
-        explanation="An interrupted run goes on where it stopped if the spec, the options and the files are the same. "
-        "What another run left is not thrown away unasked.",
+        explanation="An interrupted run goes on where it stopped if the spec, the options and the files so far are "
+        "the same. What another run left is not thrown away unasked; files that it had not come to may be others.",
         bad="# --out scores.jsonl, interrupted, and again with other files",
         good="# the same command again",
         kind="shown",

@@ -74,7 +74,7 @@ def on_ray(work: Work[Result], paths: Iterable[str], jobs: int | None, address: 
     try:
         import ray
     except ImportError:
-        raise UsageError([diagnostic("D847", format="scores from Ray", extra="ray")]) from None
+        raise UsageError([diagnostic("D847", what="Ray", extra="ray")]) from None
     try:
         started = ray.init(address=address, num_cpus=jobs if address is None else None, **_QUIET)
     except (ConnectionError, RuntimeError, ValueError) as error:

@@ -4,21 +4,22 @@ In: the lines of one file after the other. Out: the result file, which appears w
 lines lie in `OUT.partial`, and `OUT.resume` says how many files, and how many bytes of the lines, are settled; what
 lies beyond was cut off by an interruption and is dropped. Both depend on nothing but the order of the files, so a run
 that was killed ends in the same bytes as one that was not. Parquet, which cannot be appended to, is made of the lines
-at the end, some thousand rows at a time.
+at the end, some thousand rows at a time. A run that settled nothing leaves nothing behind.
 """
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
 from stlspec.compiler.files import write_bytes
-from stlspec.errors import DataError, InputError, UsageError, diagnostic
+from stlspec.errors import InputError, UsageError, diagnostic
 
 SCHEMA = "stlspec.scores/1"
 SUFFIXES = (".jsonl", ".parquet")
+_TEXTS = ("file", "name", "label")
 _ROWS_AT_A_TIME = 8192
 _FILES_BETWEEN_MARKS = 64
 
@@ -26,16 +27,19 @@ _FILES_BETWEEN_MARKS = 64
 class Journal:
     """Takes the lines of one file after the other; changes its two files."""
 
-    def __init__(self, out: Path, identity: str) -> None:
+    def __init__(self, out: Path, identity: Callable[[int], str]) -> None:
         """Go on where an interrupted run of the same work stopped, or begin.
 
-        Args:   out: the result file, .jsonl or .parquet. identity: tells this work from any other.
-        Raises: UsageError D849: what lies there is of another work; D880: the suffix says neither format.
-                InputError S092: it cannot be written.
+        Args:   out: the result file, .jsonl or .parquet. identity: tells the work on the first so many files from any
+                other; what comes after them does not count, so that a file which stopped a run can be taken out.
+        Raises: UsageError D847: Parquet is wanted and its extra missing; D849: what lies there is of another work;
+                D880: the suffix says neither format. InputError S092: it cannot be written.
         """
         if out.suffix not in SUFFIXES:
             what = f"`--out {out.name}` says no format"
             raise UsageError([diagnostic("D880", what=what, help="end it in .jsonl or .parquet")])
+        if out.suffix == ".parquet":
+            _pyarrow()  # before hours of work, not after them
         self.out, self.identity = out, identity
         self.partial = out.with_name(out.name + ".partial")
         self.mark = out.with_name(out.name + ".resume")
@@ -57,10 +61,15 @@ class Journal:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Settle what has come; an interrupted run goes on there."""
-        if not self._file.closed:
+        """Settle what has come, for an interrupted run to go on there."""
+        if self._file.closed:
+            return
+        if self.files:
             self._settle()
-            self._file.close()
+        self._file.close()
+        if not self.files:
+            self.partial.unlink(missing_ok=True)
+            self.mark.unlink(missing_ok=True)
 
     def add(self, lines: Sequence[str], failed: bool) -> None:
         """Take the lines of the next file. Raises: InputError S092: they cannot be written."""
@@ -75,7 +84,7 @@ class Journal:
             self._settle()
 
     def finish(self) -> None:
-        """Let the result appear. Raises: UsageError D847: Parquet is wanted and its extra missing."""
+        """Let the result appear. Raises: InputError S092: it cannot be written."""
         self._settle()
         self._file.close()
         if self.out.suffix == ".jsonl":
@@ -93,7 +102,7 @@ class Journal:
             os.fsync(self._file.fileno())
         except OSError as error:
             raise _unwritable(self.partial, error) from None
-        document = {"schema": SCHEMA, "identity": self.identity, "files": self.files, "counts": self.counts}
+        document = {"schema": SCHEMA, "identity": self.identity(self.files), "files": self.files, "counts": self.counts}
         write_bytes(self.mark, (json.dumps({**document, "bytes": self._file.tell()}) + "\n").encode())
         self._marked = self.files
 
@@ -103,7 +112,9 @@ class Journal:
             document = json.loads(self.mark.read_text(encoding="utf-8"))
             sizes = [document["files"], document["bytes"], *document["counts"]]
             right = document["schema"] == SCHEMA and all(type(n) is int and n >= 0 for n in sizes) and len(sizes) == 4
-            right = right and document["identity"] == self.identity and self.partial.stat().st_size >= sizes[1]
+            right = (
+                right and document["identity"] == self.identity(sizes[0]) and self.partial.stat().st_size >= sizes[1]
+            )
         except FileNotFoundError:
             return 0
         except (OSError, ValueError, KeyError, TypeError):
@@ -134,11 +145,7 @@ def write_parquet(documents: Iterable[dict[str, Any]], path: Path) -> None:
             NAME.robustness, NAME.verdict, NAME.vacuous, NAME.witness_sample and NAME.witness_time.
     Raises: UsageError D847: the extra is missing.
     """
-    try:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-    except ImportError:
-        raise UsageError([diagnostic("D847", format="Parquet", extra="parquet")]) from None
+    pa, pq = _pyarrow()
     writer: Any = None
     rows: list[dict[str, Any]] = []
 
@@ -155,9 +162,18 @@ def write_parquet(documents: Iterable[dict[str, Any]], path: Path) -> None:
         if len(rows) == _ROWS_AT_A_TIME:
             flush()
     flush()
-    if writer is None:
-        raise DataError([diagnostic("D803", file=str(path), where=": no file could be scored")])
+    if writer is None:  # no file could be scored: a table of no rows, whose requirements nobody has named
+        writer = pq.ParquetWriter(path, pa.schema([(key, pa.string()) for key in _TEXTS]))
     writer.close()
+
+
+def _pyarrow() -> tuple[Any, Any]:
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError:
+        raise UsageError([diagnostic("D847", what="writing Parquet", extra="parquet")]) from None
+    return pa, pq
 
 
 def _flat(document: dict[str, Any]) -> dict[str, Any]:
@@ -172,7 +188,6 @@ def _flat(document: dict[str, Any]) -> dict[str, Any]:
 
 def _schema(pa: Any, row: dict[str, Any]) -> Any:
     kinds = {"verdict": pa.string(), "vacuous": pa.bool_(), "witness_sample": pa.int64()}
-    texts = ("file", "name", "label")
     return pa.schema(
-        [(key, pa.string() if key in texts else kinds.get(key.rpartition(".")[2], pa.float64())) for key in row]
+        [(key, pa.string() if key in _TEXTS else kinds.get(key.rpartition(".")[2], pa.float64())) for key in row]
     )

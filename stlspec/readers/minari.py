@@ -82,7 +82,7 @@ def _minari(path: Path) -> Any:
         import minari
         import PIL  # noqa: F401 - likewise
     except ImportError:
-        raise refusal("D847", path, format="Minari", extra="minari") from None
+        raise refusal("D847", path, what="Minari", extra="minari") from None
     return minari
 
 

@@ -46,7 +46,7 @@ def read(path: Path, columns: Collection[str] | None = None) -> list[Recording]:
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError:
-        raise refusal("D847", path, format="Parquet", extra="parquet") from None
+        raise refusal("D847", path, what="reading Parquet", extra="parquet") from None
     required_file(path, "columns, one a signal")
     try:
         # Neither the page index nor a memory map: a file that changes meanwhile must not take the process down.

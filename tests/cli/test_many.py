@@ -59,6 +59,8 @@ def test_bad_files_are_left_out_and_told(folder):
         ["--out", "r.txt"],
         ["--out", "d0.csv"],
         ["--jobs", "0"],
+        ["--jobs", "257"],
+        ["--jobs", "99999999999999999999"],
         ["--resample", "fast"],
     ],
 )

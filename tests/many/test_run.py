@@ -50,6 +50,9 @@ def test_a_file_that_cannot_be_used_ends_the_run_or_is_left_out(job, paths, tmp_
     mixed = [*paths[:2], str(bad), *paths[2:]]
     out = tmp_path / "scores.jsonl"
     with pytest.raises(DataError):
+        score_many(job, [str(bad), *paths], out, serially)
+    assert not list(tmp_path.glob("scores*")), "nothing was settled, and nothing stands in the way of the next run"
+    with pytest.raises(DataError):
         score_many(job, mixed, out, serially)
     assert not out.exists()
     assert score_many(job, mixed, out, serially, keep_going=True) == Summary(10, 27, 1)
@@ -69,7 +72,9 @@ def test_ranks_in_memory_are_those_of_one_process(job, paths):
     assert ranked(job.bundle, scores).to_json() == score(job.bundle, load_demonstrations(paths)).to_json()
 
 
-def test_work_is_told_apart_by_spec_options_and_files(job, paths):
+def test_work_is_told_apart_by_spec_options_and_the_files_that_are_settled(job, paths):
     same = identity_of(job, paths)
-    assert same == identity_of(job, list(paths))
-    assert len({same, identity_of(job, paths[::-1]), identity_of(replace(job, end="strict"), paths)}) == 3
+    assert same(4) == identity_of(job, [*paths[:4], "other.csv"])(4)
+    others = [identity_of(job, paths[::-1]), identity_of(replace(job, end="strict"), paths)]
+    assert [same(n) for n in (2, 5, 4, 9)] == [identity_of(job, paths)(n) for n in (2, 5, 4, 9)]
+    assert len({same(4), same(5), *(other(4) for other in others)}) == 4
