@@ -5,11 +5,11 @@ The enclosure is sound, not tight: a signal that occurs twice counts as two. It 
 without any data.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 
 from stlspec.compiler.model import Instance, Model
 from stlspec.compiler.quantities import SAME, conversion
+from stlspec.compiler.ranges import INF, WHOLE, Range, image
 from stlspec.lang.nodes import (
     Call,
     Expression,
@@ -24,8 +24,6 @@ from stlspec.lang.nodes import (
     post_order,
 )
 
-Extent = tuple[float, float]
-ANY: Extent = (-math.inf, math.inf)
 _CHAINED = frozenset({"lt", "le", "gt", "ge", "eq", "ne"})
 
 
@@ -34,32 +32,30 @@ class Extents:
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._lets: dict[str, Extent] = {}
-        self._instances: dict[tuple[int, tuple[Extent, ...]], Extent] = {}
+        self._lets: dict[str, Range] = {}
+        self._instances: dict[tuple[int, tuple[Range, ...]], Range] = {}
         for name in model.let_order:
             let = model.declared.lets[name]
             if not let.arguments:
                 self._lets[name] = self.of(let.body)
 
-    def of(self, root: Expression, at: "Model | Instance | None" = None, given: Mapping[str, Extent] = {}) -> Extent:
+    def of(self, root: Expression, at: "Model | Instance | None" = None, given: Mapping[str, Range] = {}) -> Range:
         """Return the extent of an expression of the spec; `at` and `given` are for the bodies of templates."""
-        found: dict[int, Extent] = {}
+        found: dict[int, Range] = {}
         for node in post_order(root):
             below = [found[id(child)] for child in children(node)]
             found[id(node)] = self._node(node, below, at or self._model, given)
         return found[id(root)]
 
-    def _node(
-        self, node: Expression, below: list[Extent], at: "Model | Instance", given: Mapping[str, Extent]
-    ) -> Extent:
+    def _node(self, node: Expression, below: list[Range], at: "Model | Instance", given: Mapping[str, Range]) -> Range:
         typing = at.typings.get(id(node))
         if typing is None or typing.kind == "broken":
-            return ANY
+            return WHOLE
         if typing.kind == "real" and typing.value is not None:
             return (typing.value, typing.value)
         match node:
             case Truth(_, value):
-                return (math.inf, math.inf) if value else (-math.inf, -math.inf)
+                return (INF, INF) if value else (-INF, -INF)
             case Name(_, text):
                 return self._name(text, given)
             case Index(_, name, _):
@@ -72,18 +68,18 @@ class Extents:
                 return _prefix(operator, below[0], _may_be_empty(operator, at))
             case Infix():
                 return self._infix(node, below, at)
-        return ANY
+        return WHOLE
 
-    def _name(self, name: str, given: Mapping[str, Extent]) -> Extent:
+    def _name(self, name: str, given: Mapping[str, Range]) -> Range:
         if name in given:
             return given[name]
         signal = self._model.signals.get(name)
         if signal is not None and signal.type == "real":
             low, high = signal.low, signal.high
-            return (-math.inf if low is None else low, math.inf if high is None else high)
-        return self._lets.get(name, ANY)
+            return (-INF if low is None else low, INF if high is None else high)
+        return self._lets.get(name, WHOLE)
 
-    def _call(self, node: Call, below: list[Extent], at: "Model | Instance") -> Extent:
+    def _call(self, node: Call, below: list[Range], at: "Model | Instance") -> Range:
         instance = at.calls.get(id(node))
         if instance is not None:
             key = (id(instance), tuple(below))
@@ -93,21 +89,14 @@ class Extents:
                 self._instances[key] = self.of(instance.template.body, instance, given)
             return self._instances[key]
         if not _in_one_unit(node.arguments, at):
-            return ANY
-        match node.function.text:
-            case "abs":
-                return _absolute(below[0])
-            case "min":
-                return (min(low for low, _ in below), min(high for _, high in below))
-            case "max":
-                return (max(low for low, _ in below), max(high for _, high in below))
-        return ANY
+            return WHOLE
+        return image(node.function.text, below)
 
-    def _infix(self, node: Infix, below: list[Extent], at: "Model | Instance") -> Extent:
+    def _infix(self, node: Infix, below: list[Range], at: "Model | Instance") -> Range:
         word = node.operators[0].word
         if word in _CHAINED or word in ("add", "sub"):
             if not _in_one_unit(node.operands, at):
-                return ANY
+                return WHOLE
             if word in _CHAINED:
                 pairs = zip(node.operators, below, below[1:], strict=False)
                 return _meet([_comparison(operator.word, left, right) for operator, left, right in pairs])
@@ -137,67 +126,43 @@ def _may_be_empty(operator: Operator, at: "Model | Instance") -> bool:
     return ticks is None or ticks[0] > 0
 
 
-def _absolute(extent: Extent) -> Extent:
-    low, high = extent
-    return (0.0 if low <= 0 <= high else min(abs(low), abs(high)), max(abs(low), abs(high)))
+def _meet(parts: Sequence[Range]) -> Range:
+    return image("min", parts)
 
 
-def _meet(parts: Sequence[Extent]) -> Extent:
-    return (min(low for low, _ in parts), min(high for _, high in parts))
+def _join(parts: Sequence[Range]) -> Range:
+    return image("max", parts)
 
 
-def _join(parts: Sequence[Extent]) -> Extent:
-    return (max(low for low, _ in parts), max(high for _, high in parts))
+def _negated(extent: Range) -> Range:
+    return image("neg", [extent])
 
 
-def _negated(extent: Extent) -> Extent:
-    return (-extent[1], -extent[0])
-
-
-def _sum(left: Extent, right: Extent) -> Extent:
-    low, high = left[0] + right[0], left[1] + right[1]
-    return (-math.inf if math.isnan(low) else low, math.inf if math.isnan(high) else high)
-
-
-def _product(left: Extent, right: Extent) -> Extent:
-    ends = [a * b for a in left for b in right]
-    return ANY if any(math.isnan(end) for end in ends) else (min(ends), max(ends))
-
-
-def _comparison(word: str, left: Extent, right: Extent) -> Extent:
-    difference = _sum(left, _negated(right))
+def _comparison(word: str, left: Range, right: Range) -> Range:
+    difference = image("sub", [left, right])
     if word in ("lt", "le"):
         return _negated(difference)
     if word in ("eq", "ne"):
-        distance = _absolute(difference)
+        distance = image("abs", [difference])
         return distance if word == "ne" else _negated(distance)
     return difference
 
 
-def _prefix(operator: Operator, operand: Extent, may_be_empty: bool) -> Extent:
+def _prefix(operator: Operator, operand: Range, may_be_empty: bool) -> Range:
     low, high = operand
     match operator.word:
         case "neg" | "not":
             return _negated(operand)
         case "always" | "historically" | "wnext" | "wprev":
-            return (low, math.inf if may_be_empty else high)
-    return (-math.inf if may_be_empty else low, high)
+            return (low, INF if may_be_empty else high)
+    return (-INF if may_be_empty else low, high)
 
 
-def _joined(operator: Operator, left: Extent, right: Extent, may_be_empty: bool) -> Extent:
+def _joined(operator: Operator, left: Range, right: Range, may_be_empty: bool) -> Range:
     match operator.word:
-        case "add":
-            return _sum(left, right)
-        case "sub":
-            return _sum(left, _negated(right))
-        case "mul":
-            return _product(left, right)
-        case "div":
-            low, high = right
-            return ANY if low <= 0 <= high else _product(left, (1 / high, 1 / low))
         case "implies":
             return _join([_negated(left), right])
         case "until" | "since":
             # The window holds the sample at hand, where the right side alone decides; else it may be empty.
-            return (-math.inf if may_be_empty else right[0], right[1])
-    return ANY
+            return (-INF if may_be_empty else right[0], right[1])
+    return image(operator.word, [left, right])

@@ -43,6 +43,22 @@ def value_ranges(nodes: Sequence[Node], signals: Sequence[Signal], base: TimeBas
     return found
 
 
+def image(op: str, operands: Sequence[Range]) -> Range:
+    """Enclose the values of an operation over everything that its operands may be.
+
+    Not in the paper: interval arithmetic.
+
+    Args:    op: a word of arithmetic, as nodes have it, or a function. operands: at least one.
+    Returns: (low, high), never NaN; `WHOLE` for an operation that is none of arithmetic.
+    """
+    result = operands[0]
+    if len(operands) == 1:
+        return _UNARY[op](result) if op in _UNARY else result if op in _BINARY else WHOLE
+    for operand in operands[1:]:
+        result = _BINARY[op](result, operand) if op in _BINARY else WHOLE
+    return result
+
+
 def _real(node: Node, operands: Sequence[Range], declared: Mapping[str, Range], shortest: float) -> Range:
     if node.op == "const":
         value = float(node.value or 0.0)
@@ -55,12 +71,7 @@ def _real(node: Node, operands: Sequence[Range], declared: Mapping[str, Range], 
         low, high = _spread(operands[0], operands[0])
         # The shortest step gives the steepest rate; no change, as at the first sample, is always among them.
         return (low, high) if node.op == "delta" else (low / shortest, high / shortest)
-    result = operands[0]
-    if len(operands) == 1:
-        return _UNARY[node.op](result)
-    for operand in operands[1:]:
-        result = _BINARY[node.op](result, operand)
-    return result
+    return image(node.op, operands)
 
 
 def _between(low: float, high: float) -> Range:

@@ -46,6 +46,9 @@ def extent(formula):
         ("always[0, 3] (x > 2)", (-2, 8)),
         ("always[1, 3] (x > 2)", (-2, INF)),
         ("eventually[1, 3] (x > 2)", (-INF, 8)),
+        ("sqrt(x + 6) > 0", (math.sqrt(6), 4)),
+        ("sin(x) > 0", (-1, 1)),
+        ("delta(x) > 0", (-INF, INF)),
         ("next (x > 2)", (-INF, 8)),
         ("wprev (x > 2)", (-2, INF)),
         ("(y > 0) until (x > 2)", (-2, 8)),
@@ -58,9 +61,16 @@ def test_what_ranges_say_of_a_formula(formula, expected):
     assert extent(formula) == expected
 
 
+def test_powers_leave_room_for_the_last_digits():
+    low, high = extent("y ** 2 > 0")
+    assert low == 0
+    assert 9 <= high < 9 + 1e-12
+
+
 def test_random_traces_stay_inside():
     rng = random.Random(3)
     atoms = ["x > 2", "y <= 1", "abs(x - y) < k", "x * y > 3", "far(x, y)", "0 <= gap <= 5", "max(x, 2 * y) != 4"]
+    atoms += ["sqrt(x) > 1", "exp(y) < 3", "hypot(x, y) >= 2", "y ** 2 > 1", "x / (y + 3) > 1", "sin(x) * y > 0"]
 
     def formula(depth):
         if not depth:
