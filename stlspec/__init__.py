@@ -39,7 +39,6 @@ _HOMES = {
         "DataError",
         "Diagnostic",
         "InputError",
-        "Monitor",
         "SpecError",
         "StlspecError",
         "UsageError",

@@ -10,7 +10,7 @@ from stlspec.lang.nodes import Expression, Infix, Name, Number, Prefix
 from stlspec.source import SourceText
 from stlspec.tools.importing.formulas import Binding, Dialect, Formulas, bare, every_node
 from stlspec.tools.importing.model import Draft, time_statement
-from stlspec.tools.importing.tokens import Cursor, Token, Unreadable, lex, number_of
+from stlspec.tools.importing.tokens import Cursor, Token, lex, number_of, read_statements
 
 TOOL = "Breach"
 DEFAULT_TIME = "s"
@@ -91,13 +91,7 @@ def read(source: SourceText, time: str | None = None) -> Draft:
     tokens, comments = lex(source, _WORD, _SIGNS, _COMMENT)
     draft = Draft(source, TOOL, time_statement(time or DEFAULT_TIME), comments=comments)
     reader = _Reader(Cursor(source, tokens, TOOL), draft)
-    while not reader.cursor.at_end:
-        first = reader.cursor.token
-        try:
-            reader.statement()
-        except Unreadable as error:
-            draft.problems.append(error.problem)
-            reader.skip(first)
+    read_statements(reader, draft.problems)
     reader.settle()
     return draft
 

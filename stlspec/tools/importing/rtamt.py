@@ -13,7 +13,7 @@ from stlspec.source import SourceText, Span
 from stlspec.tools.importing.formulas import COMPARISONS, Binding, Dialect, Formulas, bare, is_real, positive
 from stlspec.tools.importing.model import UNITS, Draft, time_statement
 from stlspec.tools.importing.python import Embedded, embedded, looks_like_program
-from stlspec.tools.importing.tokens import Cursor, Token, Unreadable, lex, number_of
+from stlspec.tools.importing.tokens import Cursor, Token, lex, number_of, read_statements
 
 TOOL = "RTAMT"
 DEFAULT_TIME = "1 s"
@@ -101,13 +101,7 @@ def _read(source: SourceText, time: str, program: Embedded | None = None) -> Dra
         for name, span, value in program.constants:
             draft.values[name] = (Name(span, name), Number(span, value, None))
     reader = _Reader(Cursor(source, tokens, TOOL), draft)
-    while not reader.cursor.at_end:
-        first = reader.cursor.token
-        try:
-            reader.statement()
-        except Unreadable as error:
-            draft.problems.append(error.problem)
-            reader.skip(first)
+    read_statements(reader, draft.problems)
     reader.settle()
     return draft
 

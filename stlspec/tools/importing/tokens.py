@@ -7,7 +7,7 @@ their signs and in how comments look, and are near enough in all else to share t
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NoReturn
+from typing import Any, Literal, NoReturn, Protocol
 
 from stlspec.errors import Diagnostic, diagnostic
 from stlspec.source import SourceText, Span
@@ -144,3 +144,31 @@ class Cursor:
     def cannot_carry(self, span: Span, what: str, why: str, way: str) -> NoReturn:
         """Give up the statement at hand, whose construct this language does not have."""
         self.refuse("S040", span, what=what, why=why, help=way)
+
+
+class Reader(Protocol):
+    """Reads the statements of one language."""
+
+    cursor: Cursor
+
+    def statement(self) -> None:
+        """Read the next statement. Raises: Unreadable."""
+
+    def skip(self, first: Token) -> None:
+        """Go on to the statement after the broken one that begins with `first`."""
+
+
+def read_statements(reader: Reader, problems: list[Diagnostic]) -> None:
+    """Read statement by statement, whatever is wrong with some of them.
+
+    Not in the paper: other tools' languages.
+
+    Args: problems: takes what is wrong, one diagnostic for each broken statement, in order.
+    """
+    while not reader.cursor.at_end:
+        first = reader.cursor.token
+        try:
+            reader.statement()
+        except Unreadable as error:
+            problems.append(error.problem)
+            reader.skip(first)
