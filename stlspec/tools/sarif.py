@@ -4,6 +4,7 @@ In: diagnostics. Out: the log as a document. Regions count in code points, as `c
 rows of the catalogue that results refer to, with their explanation and examples.
 """
 
+import os
 from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any
@@ -86,6 +87,9 @@ def _fix(fix: Fix, source: SourceText) -> dict[str, Any]:
 
 
 def uri(file: str) -> str:
-    """Return the URI of a file: relative ones stay relative, with slashes, everything else escaped."""
+    """Return the URI of a file: relative ones stay relative, with slashes, everything else escaped.
+
+    A path that is no UTF-8 text keeps its bytes.
+    """
     path = PurePath(file)
-    return path.as_uri() if path.is_absolute() else quote(path.as_posix())
+    return path.as_uri() if path.is_absolute() else quote(os.fsencode(path.as_posix()))
