@@ -26,7 +26,7 @@ from stlspec.semantics.evaluation import Evaluation, RequirementResult
 from stlspec.semantics.explain import Explanation, explain, named_values
 from stlspec.semantics.gradients import gradient
 from stlspec.semantics.online import Monitor, make_monitor
-from stlspec.semantics.online.monitor import Reading
+from stlspec.semantics.online.monitor import Reading, Table
 from stlspec.semantics.online.plan import Ends
 from stlspec.source import SourceText
 
@@ -95,16 +95,19 @@ class Bundle(BundleData):
         """
         return gradient(self, signals, time, requirement, algebra)
 
-    def monitor(self, reading: Reading = "start", ends: Ends = "any") -> Monitor:
+    def monitor(self, reading: Reading = "start", ends: Ends = "any", states: Table | None = None) -> Monitor:
         """Make a monitor: samples go in one by one, what is known of each requirement comes out.
 
         Not in the paper: it evaluates complete traces only.
 
         Args:    reading: "start" follows the value at sample 0, "every" gives the value at each sample once known.
                  ends: "any", or "horizon" if the trace is promised to reach the horizon.
-        Raises:  UsageError: the reading or the end is unknown.
+                 states: the values of the signals in every state, by name (n_states,), or (n_states, n_signals)
+                 in the order of the spec; a sample is then the number of a state.
+        Raises:  UsageError: the reading, the end or the shape of `states` is wrong. DataError: a state has a
+                 value that no sample may have.
         """
-        return make_monitor(self, reading, ends)
+        return make_monitor(self, reading, ends, states)
 
     def explain(self, requirement: str, result: RequirementResult) -> Explanation:
         """Say which sub-formula, sample and signals decide a result of `evaluate`, and what would turn it."""

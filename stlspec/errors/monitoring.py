@@ -63,4 +63,16 @@ CODES: tuple[Code, ...] = (
         good="# hard a: eventually[0, 5] (x > 0); stlspec monitor spec.stl --reading every",
         kind="shown",
     ),
+    Code(
+        "D895",
+        "a state that does not exist",
+        "error",
+        message="sample {sample} is the state {state}, but states are numbered 0 to {last}",
+        help="give the number of one of the states that the monitor was made for",
+        explanation="A monitor made with `states` takes the number of a state in place of the values of signals: "
+        "the row in the arrays that it was made with.",
+        bad='bundle.monitor(states={"x": [1, 2]}).update(2)',
+        good='bundle.monitor(states={"x": [1, 2]}).update(1)',
+        kind="shown",
+    ),
 )

@@ -17,7 +17,7 @@ from stlspec.compiler.ir import Node
 from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.arrays import enclosures, needed, stretch, three
-from stlspec.semantics.online.front import Front, Lines
+from stlspec.semantics.online.front import Lines
 from stlspec.semantics.online.late import (
     Late,
     LateBoolean,
@@ -31,9 +31,10 @@ from stlspec.semantics.online.late import (
     Sink,
 )
 from stlspec.semantics.online.past import Greatest, Since, Sliding
-from stlspec.semantics.online.plan import DEEPEST, Ends, Plan, make_plan
-from stlspec.semantics.online.program import Program, compiled
+from stlspec.semantics.online.plan import DEEPEST, Plan
+from stlspec.semantics.online.program import Program, compiled, make_front
 from stlspec.semantics.online.saving import Remembering, State, Unsound, items, whole
+from stlspec.semantics.online.states import States
 from stlspec.semantics.online.tape import Tape, reach_back
 from stlspec.semantics.robustness import TIE
 
@@ -197,15 +198,14 @@ def deferred(bundle: BundleData, plan: Plan) -> tuple[str, ...]:
     return tuple(r.name for r in bundle.requirements if ahead[r.root] is None)
 
 
-def every_program(bundle: BundleData, ends: Ends) -> Program:
+def every_program(bundle: BundleData, plan: Plan, states: States | None = None) -> Program:
     """Write the program of the reading `every`."""
-    plan, lines = make_plan(bundle, ends), Lines()
+    lines = Lines()
     for requirement in bundle.requirements:
         if plan.depths[requirement.root] > DEEPEST:
             what = f"the reading `every` of '{requirement.name}', whose operators look ahead {DEEPEST} deep and more"
             raise UsageError([diagnostic("D880", what=what, help="use the reading `start`")])
-    front = Front(plan, bundle.signals, lines)
-    front.write_samples()
+    front = make_front(plan, bundle, states, lines)
     model = Network(bundle, plan)
     part = lines.keep(lambda: Network(bundle, plan))
     stamps = [] if plan.counted else ["clock.shown(T) if time is None else clock.stamp"]

@@ -130,6 +130,8 @@ class Front:
 
     def __init__(self, plan: Plan, signals: Sequence[Signal], lines: Lines) -> None:
         self.plan, self.lines = plan, lines
+        # The DAG as far down as formulas are computed sample by sample.
+        self.nodes: Sequence[Node] = plan.nodes
         self._signals = {s.name: s for s in signals}
         self._named: dict[int, str] = {}
         self._formulas: dict[int, str] = {}
@@ -137,10 +139,29 @@ class Front:
 
     def write_samples(self) -> None:
         """Write what reads and checks a sample, and all expressions: everything that can be refused."""
+        lines = self.lines
+        lines.add("n = clock.n")
+        self._read()
+        if self.plan.counted:
+            lines.add("T = n if time is None and clock.stamp is None else clock.read(time)")
+        else:
+            lines.add("T = clock.read(time)")
+        lines.add("memory = store.values")
+        for index, node in enumerate(self.plan.nodes):
+            if node.op in REAL and index not in self._named and self._computed(index):
+                self._named[index] = self._real(index, node)
+        lines.add("clock.ticks = T; clock.n = n + 1" if self.plan.counted else "clock.take(T, time)")
+        if self.plan.counted:
+            lines.add("if time is not None:")
+            lines.add("    clock.n = n; clock.take(T, time)")
+        for line in self._kept:
+            lines.add(line)
+
+    def _read(self) -> None:
+        """Write what takes the values of signals out of a sample."""
         lines, nodes = self.lines, self.plan.nodes
         used = list(dict.fromkeys(str(n.value) for n in nodes if n.op in ("signal", "bool")))
         names = {name: f"s{i}" for i, name in enumerate(used)}
-        lines.add("n = clock.n")
         if used:
             lines.add("try:")
             for name, variable in names.items():
@@ -149,22 +170,11 @@ class Front:
             lines.add(f"    {lines.bind(missing)}(sample, {lines.bind(used)})")
         for name, variable in names.items():
             self._check(self._signals[name], variable)
-        if self.plan.counted:
-            lines.add("T = n if time is None and clock.stamp is None else clock.read(time)")
-        else:
-            lines.add("T = clock.read(time)")
-        lines.add("memory = store.values")
-        for index, node in enumerate(nodes):
-            if node.op in ("signal", "bool"):
-                self._named[index] = names[str(node.value)]
-            elif node.op in REAL:
-                self._named[index] = self._real(index, node)
-        lines.add("clock.ticks = T; clock.n = n + 1" if self.plan.counted else "clock.take(T, time)")
-        if self.plan.counted:
-            lines.add("if time is not None:")
-            lines.add("    clock.n = n; clock.take(T, time)")
-        for line in self._kept:
-            lines.add(line)
+        self._named |= {i: names[str(n.value)] for i, n in enumerate(nodes) if n.op in ("signal", "bool")}
+
+    def _computed(self, _: int) -> bool:
+        """Tell whether an expression is computed at every sample."""
+        return True
 
     def _check(self, signal: Signal, variable: str) -> None:
         lines, name = self.lines, self.lines.bind(signal.name)
@@ -222,8 +232,8 @@ class Front:
         """Write a settled formula and all under it, each once; return its variable."""
         if index not in self._formulas:
             # A loop over the DAG, not a recursion: a chain of formulas may be long.
-            for below in needed_nodes(self.plan.nodes, [index]):
-                node = self.plan.nodes[below]
+            for below in needed_nodes(self.nodes, [index]):
+                node = self.nodes[below]
                 if node.op not in REAL and below not in self._formulas:
                     self._formulas[below] = self._formula(below, node)
         return self._formulas[index]

@@ -6,11 +6,11 @@ with the number of samples unless a formula needs them all. A sample that is ref
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import meaning_sha256
@@ -21,9 +21,11 @@ from stlspec.semantics.online.plan import Ends, make_plan
 from stlspec.semantics.online.program import Objects, Program, shown, start_program
 from stlspec.semantics.online.samples import refuse
 from stlspec.semantics.online.saving import Unsound
+from stlspec.semantics.online.states import make_states
 from stlspec.semantics.robustness import shown as shown_values
 
 Reading = Literal["start", "every"]
+Table = Mapping[str, ArrayLike] | ArrayLike
 Floats = NDArray[np.float64]
 
 _SCHEMA = "stlspec.monitor/1"
@@ -55,13 +57,21 @@ class Open:
 class Monitor:
     """Follows one trace. Make one with `make_monitor`; use it from one thread at a time."""
 
-    __slots__ = ("_bundle", "_objects", "_program", "_step", "ends", "reading")
+    __slots__ = ("_bundle", "_objects", "_program", "_step")
 
-    def __init__(self, bundle: BundleData, reading: Reading, ends: Ends, program: Program, objects: Objects) -> None:
+    def __init__(self, bundle: BundleData, program: Program, objects: Objects) -> None:
         self._bundle, self._program, self._objects = bundle, program, objects
-        self.reading: Reading = reading
-        self.ends: Ends = ends
         self._step = program.bind(objects)
+
+    @property
+    def reading(self) -> Reading:
+        """What is followed: "start" or "every"."""
+        return "start" if self._program.network < 0 else "every"
+
+    @property
+    def ends(self) -> Ends:
+        """What is promised of the end: "any" or "horizon"."""
+        return self._program.ends
 
     @property
     def n_samples(self) -> int:
@@ -73,13 +83,14 @@ class Monitor:
         """Time of the newest sample in the spec's unit, as given if it was given."""
         return self._objects.clock.latest
 
-    def update(self, sample: Mapping[str, Any], time: float | None = None) -> Any:
+    def update(self, sample: Mapping[str, Any] | int, time: float | None = None) -> Any:
         """Take the next sample.
 
         Not in the paper: it evaluates complete traces only. The step of Algorithm 2 that looks at a partial
         trace takes `current`.
 
-        Args:    sample: a value for each signal that a requirement uses; others are ignored.
+        Args:    sample: a value for each signal that a requirement uses; others are ignored. The number of a
+                 state if the monitor was made for `states`.
                  time: its time stamp in the spec's unit; None where samples are counted or periodic.
         Returns: with the reading `start` a mapping from requirements to `Standing`: what is known of their
                  values at sample 0. With `every` a list of `Known`: the values that this sample made known,
@@ -141,7 +152,7 @@ class Monitor:
         """Return a monitor that has seen the same samples and goes its own way."""
         objects = self._program.objects()
         objects.load(self._objects.save())
-        return Monitor(self._bundle, self.reading, self.ends, self._program, objects)
+        return Monitor(self._bundle, self._program, objects)
 
     def to_bytes(self) -> bytes:
         """Return the monitor's memory as JSON, to be restored with `from_bytes`."""
@@ -152,13 +163,15 @@ class Monitor:
             "ends": self.ends,
             "state": self._objects.save(),
         }
+        if self._program.states is not None:
+            document["states_sha256"] = self._program.states.sha256()
         return json.dumps(document, allow_nan=False, separators=(",", ":")).encode()
 
     @classmethod
-    def from_bytes(cls, bundle: BundleData, data: bytes) -> "Monitor":
-        """Restore a monitor of the same spec; nothing in the bytes is executed.
+    def from_bytes(cls, bundle: BundleData, data: bytes, states: Table | None = None) -> "Monitor":
+        """Restore a monitor of the same spec and the same states, if any; nothing in the bytes is executed.
 
-        Raises: DataError D893: they are damaged, or were saved with another spec or version.
+        Raises: DataError D893: they are damaged, or were saved with another spec, states or version.
         """
         try:
             document = _document(data)
@@ -167,7 +180,10 @@ class Monitor:
             reading, ends = document.get("reading"), document.get("ends")
             if reading not in ("start", "every") or ends not in ("any", "horizon"):
                 raise Unsound("its reading is unknown")
-            monitor = make_monitor(bundle, reading, ends)
+            monitor = make_monitor(bundle, reading, ends, states)
+            tables = monitor._program.states
+            if document.get("states_sha256") != (None if tables is None else tables.sha256()):
+                raise Unsound("it was saved with other states")
             monitor._objects.load(document.get("state"))
             wanted = len(bundle.requirements) if reading == "start" and monitor.n_samples else 0
             if len(monitor._objects.clock.ends()) != wanted:
@@ -201,7 +217,9 @@ def _open(first: int, times: Floats, rows: Floats) -> Open:
     return Open(*columns)
 
 
-def make_monitor(bundle: BundleData, reading: Reading = "start", ends: Ends = "any") -> Monitor:
+def make_monitor(
+    bundle: BundleData, reading: Reading = "start", ends: Ends = "any", states: Table | None = None
+) -> Monitor:
     """Make a monitor that has seen no sample yet.
 
     Not in the paper: it evaluates complete traces only.
@@ -211,14 +229,20 @@ def make_monitor(bundle: BundleData, reading: Reading = "start", ends: Ends = "a
         reading: "start" follows the requirements at sample 0, "every" at each sample.
         ends: "any": the trace may end after any sample, so no sample to come is certain. "horizon": it is
             promised to reach the horizon without a gap, which can make enclosures narrower.
+        states: the values of the signals in every state of a finite state space, as a mapping to arrays
+            (n_states,) or one array (n_states, n_signals) in the order of the spec. A sample is then the number
+            of a state; the same is told as for its values, for less work. They are copied.
 
-    Raises: UsageError: the reading or the end is unknown.
+    Raises: UsageError: the reading or the end is unknown, or `states` has a wrong shape. DataError: a state has a
+        value that no sample may have.
     """
     for name, given, known in (("reading", reading, ("start", "every")), ("ends", ends, ("any", "horizon"))):
         if given not in known:
             raise UsageError([diagnostic("D880", what=f"{name}={given!r}", help=f"use {known[0]} or {known[1]}")])
-    program = start_program(bundle, ends) if reading == "start" else every_program(bundle, ends)
-    return Monitor(bundle, reading, ends, program, program.objects())
+    plan = make_plan(bundle, ends)
+    tables = None if states is None else make_states(bundle, plan, states)
+    program = start_program(bundle, plan, tables) if reading == "start" else every_program(bundle, plan, tables)
+    return Monitor(bundle, replace(program, ends=ends, states=tables), program.objects())
 
 
 def late_warnings(bundle: BundleData) -> tuple[Diagnostic, ...]:

@@ -11,10 +11,11 @@ from typing import Any, NamedTuple
 from stlspec.compiler.bundle import BundleData
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.front import Front, Lines, Memory
-from stlspec.semantics.online.plan import Ends, Plan, make_plan
+from stlspec.semantics.online.plan import Ends, Plan
 from stlspec.semantics.online.roots import Roots
 from stlspec.semantics.online.samples import Clock
 from stlspec.semantics.online.saving import Remembering, Unsound, items
+from stlspec.semantics.online.states import StateFront, States
 
 
 class Standing(NamedTuple):
@@ -58,7 +59,11 @@ class Objects:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
-    """What all copies of a monitor share; network: which object is the network of the reading `every`."""
+    """What all copies of a monitor share.
+
+    network: which object is the network of the reading `every`, -1 with the reading `start`. ends: what was
+    promised of the end. states: what samples are numbers of, if they are.
+    """
 
     plan: Plan
     build: Callable[..., Callable[..., Any]]
@@ -66,6 +71,8 @@ class Program:
     makers: tuple[Callable[[], Any], ...]
     calls: tuple[tuple[int, Callable[[Any], Any]], ...]
     network: int
+    ends: Ends = "any"
+    states: States | None = None
 
     def objects(self) -> Objects:
         """Return fresh memory."""
@@ -77,26 +84,38 @@ class Program:
         return self.build(objects.clock, objects.store, *(method(objects.parts[i]) for i, method in self.calls))
 
 
-def start_program(bundle: BundleData, ends: Ends) -> Program:
-    """Write the program of the reading `start`: the enclosures of all requirements at sample 0."""
-    plan, lines = make_plan(bundle, ends), Lines()
-    front = Front(plan, bundle.signals, lines)
+def make_front(plan: Plan, bundle: BundleData, states: States | None, lines: Lines) -> Front:
+    """Return a front whose lines for samples are written; states: what samples are numbers of."""
+    front = Front(plan, bundle.signals, lines) if states is None else StateFront(plan, states, lines)
     front.write_samples()
+    return front
+
+
+def start_program(bundle: BundleData, plan: Plan, states: States | None = None) -> Program:
+    """Write the program of the reading `start`: the enclosures of all requirements at sample 0."""
+    lines = Lines()
+    front = make_front(plan, bundle, states, lines)
     roots = Roots(plan, front)
     found = {r.name: roots.enclosure(r.root) for r in bundle.requirements}
-    lines.add(f"clock.last = ({', '.join(name for names in found.values() for name in names)},)")
-    lines.add(f"return {{{', '.join(_standing(lines, name, *names) for name, names in found.items())}}}")
+    # Most samples change nothing: what was told is told again.
+    lines.add(f"last = ({', '.join(name for names in found.values() for name in names)},)")
+    lines.add("if last != clock.last:")
+    lines.add("    clock.last = last")
+    lines.add(f"    clock.told = ({', '.join(_standing(lines, *names) for names in found.values())},)")
+    told = [f"r{i}" for i in range(len(found))]
+    lines.add(f"{', '.join(told)}, = clock.told")
+    lines.add(f"return {{{', '.join(f'{lines.bind(name)}: {r}' for name, r in zip(found, told, strict=True))}}}")
     return compiled(plan, lines)
 
 
-def _standing(lines: Lines, name: str, low: str, high: str, current: str) -> str:
+def _standing(lines: Lines, low: str, high: str, current: str) -> str:
     bound = lines.bound
     bound |= {"new": tuple.__new__, "Standing": Standing}
     bound |= {"SAT": Verdict.SATISFIED, "VIO": Verdict.VIOLATED, "OPEN": Verdict.UNDECIDED}
     # `TIE` and `NTIE` stand for 0: what is shown of them.
     low_shown, high_shown, current_shown = (f"{v} if {v} > TIE or {v} < NTIE else 0.0" for v in (low, high, current))
     verdict = f"SAT if {low} > 0 else VIO if {high} < 0 else OPEN"
-    return f"{lines.bind(name)}: new(Standing, ({low_shown}, {high_shown}, {current_shown}, {verdict}))"
+    return f"new(Standing, ({low_shown}, {high_shown}, {current_shown}, {verdict}))"
 
 
 def compiled(plan: Plan, lines: Lines, network: int = -1) -> Program:

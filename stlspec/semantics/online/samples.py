@@ -35,10 +35,10 @@ class Clock(Remembering):
 
     n: number of samples. ticks: time of the newest one since the first. first, stamp: time stamps of the first
     and the newest one as given; None without time stamps. last: low, high and current value of one requirement
-    after the other, with the reading `start`.
+    after the other, with the reading `start`; told: what was made of them.
     """
 
-    __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "ticks")
+    __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "ticks", "told")
     STATE: ClassVar[State] = {
         "n": whole,
         "ticks": whole,
@@ -52,7 +52,9 @@ class Clock(Remembering):
         self.n, self.ticks = 0, -1
         self.first: float | None = None
         self.stamp: float | None = None
+        # A list once it is loaded, and so unlike any tuple: `told` is not saved.
         self.last: Sequence[float] = ()
+        self.told: tuple[Any, ...] = ()
 
     def read(self, time: Any) -> int:
         """Return the ticks of the next sample. Raises: DataError: there cannot be one at `time`."""

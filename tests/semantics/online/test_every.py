@@ -19,7 +19,8 @@ def bundle():
 
 
 def test_requirements_share_operators_and_come_each_at_its_time():
-    program = every_program(bundle(), "any")
+    spec = bundle()
+    program = every_program(spec, make_plan(spec))
     objects = program.objects()
     step = program.bind(objects)
     assert step({"x": 2.0}, None) == [Known(0, 0.0, "c", 2.0, "satisfied")]

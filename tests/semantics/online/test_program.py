@@ -2,6 +2,7 @@
 
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
+from stlspec.semantics.online.plan import make_plan
 from stlspec.semantics.online.program import Standing, shown, start_program
 from stlspec.semantics.robustness import TIE
 from tests.semantics.online.cases import STEP, bundle_of
@@ -12,7 +13,7 @@ def program():
     root = b.add("once", [b.add("ge", [b.add("signal", value="x"), b.add("const", value=1.0)])], interval=(0, None))
     always = b.add("always", [root], interval=(0, None))
     bundle = bundle_of(tuple(b.nodes), (Requirement("r", "hard", always),), (Signal("x"),), STEP)
-    return start_program(bundle, "any")
+    return start_program(bundle, make_plan(bundle))
 
 
 def test_two_sets_of_objects_do_not_disturb_each_other():

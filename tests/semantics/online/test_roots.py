@@ -4,6 +4,7 @@ import pytest
 
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
+from stlspec.semantics.online.plan import make_plan
 from stlspec.semantics.online.program import start_program
 from tests.semantics.online.cases import PERIOD, STEP, bundle_of
 
@@ -13,7 +14,7 @@ def engines(build, base=STEP):
     p, q = (b.add("gt", [b.add("signal", value=n), b.add("const", value=0.0)]) for n in ("x", "y"))
     root = build(b, p, q)
     bundle = bundle_of(tuple(b.nodes), (Requirement("r", "hard", root),), (Signal("x"), Signal("y")), base)
-    return [type(part).__name__ for part in start_program(bundle, "any").objects().parts]
+    return [type(part).__name__ for part in start_program(bundle, make_plan(bundle)).objects().parts]
 
 
 def windowed(op, low=0, high=3):
@@ -55,7 +56,7 @@ def test_equal_parts_of_requirements_share_an_engine():
     always = G(b, b.add("gt", [b.add("signal", value="x"), b.add("const", value=0.0)]))
     roots = {"a": always, "b": b.add("not", [always])}
     bundle = bundle_of(tuple(b.nodes), tuple(Requirement(n, "hard", r) for n, r in roots.items()), (Signal("x"),), STEP)
-    assert len(start_program(bundle, "any").makers) == 1
+    assert len(start_program(bundle, make_plan(bundle)).makers) == 1
 
 
 def test_next_inside_a_body_needs_samples_without_gaps():

@@ -26,7 +26,7 @@ def test_what_is_known_equals_the_naive_recursion():
     engines = 0
     for _ in range(400):
         case = random_case(rng, endless_formula, depth=5, longest=10)
-        parts = start_program(case.bundle(), case.ends).objects().parts
+        parts = start_program(case.bundle(), make_plan(case.bundle(), case.ends)).objects().parts
         engines += any(type(part).__name__ == "Unending" for part in parts)
         check_start(case)
     assert engines > 50
