@@ -8,14 +8,12 @@ and an operand follows, and never if the text declares it; a word after a number
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
-from lark import Lark, Token
-from lark.parsers.lalr_analysis import Shift
+from lark import Token
 
 from stlspec.errors import Diagnostic, diagnostic
-from stlspec.lang import grammar
+from stlspec.lang.automaton import END, automaton
 from stlspec.lang.depth import DEEPEST, too_deep
 from stlspec.lang.hints import Failure, describe
 from stlspec.lang.nodes import (
@@ -39,13 +37,11 @@ from stlspec.lang.statements import (
     lost,
     stands_before_statement,
 )
-from stlspec.lang.tree import TreeBuilder, span_of
+from stlspec.lang.tree import span_of
 from stlspec.lang.units import is_unit_word
 from stlspec.source import SourceText, Span
 
 _TALLEST_STACK = 5000
-_PREFIX_RULES = frozenset({"always", "eventually", "historically", "once", "next", "prev"})
-_INFIX_RULES = frozenset({"until", "since", "unless", "release"})
 _OPERAND_STARTS = frozenset(
     (
         "NAME NUMBER LPAR TRUE FALSE INF MINUS NOT BANG LSQB ALWAYS EVENTUALLY HISTORICALLY ONCE NEXT PREV WNEXT WPREV"
@@ -53,8 +49,8 @@ _OPERAND_STARTS = frozenset(
 )
 _NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
 """Words that after a number begin a statement or a clause, in the wrong place: never units."""
-_CLAUSES = ("SPEC USE TIME DEPENDS ON SCALE BOUND UNIT_WORD IN FROM HOLDS FAILS EPISODE AT MARGIN IS OUTRANKS").split()
-_END = "$END"
+_OPENING = frozenset({"LPAR", "LSQB", "LBRACE"})
+_CLOSING = frozenset({"RPAR", "RSQB", "RBRACE"})
 _GUESS = diagnostic("S001", found="", expected="")
 _MOST_REPAIRS = 200
 """How many broken statements of a text are given a way out that was tried; trying costs time."""
@@ -80,36 +76,12 @@ class Syntax:
     used: tuple["Syntax", ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class _Automaton:
-    """Lark's tables for one start symbol, and the alias words read off the grammar's rules."""
-
-    lark: Lark
-    prefix_aliases: frozenset[str]
-    infix_aliases: frozenset[str]
-    contextual: frozenset[str]
-
-
-@cache
-def _automaton() -> _Automaton:
-    lark = grammar.parser(TreeBuilder())
-    aliases: dict[str, frozenset[str]] = {}
-    words = {t.name: str(t.pattern.value) for t in lark.terminals}
-    for rules in (_PREFIX_RULES, _INFIX_RULES):
-        terminals = {rule.expansion[0].name for rule in lark.rules if rule.origin.name in rules}
-        canonical = {name for name in terminals if words[name] in rules}
-        aliases["prefix" if rules is _PREFIX_RULES else "infix"] = frozenset(terminals - canonical)
-    contextual = frozenset(_CLAUSES) | aliases["prefix"] | aliases["infix"]
-    return _Automaton(lark, aliases["prefix"], aliases["infix"], contextual)
-
-
 def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
     """Parse every statement of `source`; a broken one costs its neighbours nothing.
 
     names: declared elsewhere, by the files that the text uses; what reads as a name in formulas depends on them.
     """
-    automaton = _automaton()
-    pieces = cut(source, automaton.lark)
+    pieces = cut(source, automaton().lark)
     names |= pieces.names
     statements: list[Statement] = []
     problems: list[Diagnostic] = []
@@ -117,7 +89,7 @@ def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
     for tokens in pieces.statements:
         rest = tokens
         while rest:
-            node, problem, used = _parsed(automaton, source, rest, names, repair=len(problems) < _MOST_REPAIRS)
+            node, problem, used = _parsed(source, rest, names, repair=len(problems) < _MOST_REPAIRS)
             if node is not None:
                 statements.append(node)
             if problem is not None:
@@ -139,13 +111,13 @@ def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
 
 
 def _parsed(
-    automaton: _Automaton, source: SourceText, tokens: Sequence[Token], names: frozenset[str], *, repair: bool
+    source: SourceText, tokens: Sequence[Token], names: frozenset[str], *, repair: bool
 ) -> tuple[Any, Diagnostic | None, int]:
     """Parse the statement that `tokens` begin with; see `_Feed.run`.
 
     One that is broken ends at the latest where a line looks like a misspelt beginning of the next.
     """
-    node, problem, used = _Feed(automaton, source, tokens, names, repair=repair).run("statement")
+    node, problem, used = _Feed(source, tokens, names, repair=repair).run("statement")
     if problem is None or problem.span is None or used < len(tokens):
         return node, problem, used
     for i in range(1, len(tokens)):
@@ -155,7 +127,7 @@ def _parsed(
                 continue
             if node is not None:
                 return node, problem, i
-            return _Feed(automaton, source, tokens[:i], names, repair=repair).run("statement")
+            return _Feed(source, tokens[:i], names, repair=repair).run("statement")
     return node, problem, used
 
 
@@ -168,7 +140,7 @@ def _from(tokens: Sequence[Token], problem: Diagnostic) -> Sequence[Token]:
 
 def tokens_of(source: SourceText) -> tuple[Token, ...]:
     """Return the tokens of a text, comments left out, as the lexer has them. Not in the paper: for the formatter."""
-    return tuple(token for piece in cut(source, _automaton().lark).statements for token in piece)
+    return tuple(token for piece in cut(source, automaton().lark).statements for token in piece)
 
 
 def parse_formula(
@@ -178,7 +150,7 @@ def parse_formula(
     tokens = tokens_of(source)
     if not tokens:
         return None, (diagnostic("S016", source=source, span=Span(0, 0)),)
-    node, problem, _used = _Feed(_automaton(), source, tokens, names).run("expression")
+    node, problem, _used = _Feed(source, tokens, names).run("expression")
     return node, (problem,) if problem else ()
 
 
@@ -193,7 +165,6 @@ class _Feed:
 
     def __init__(
         self,
-        automaton: _Automaton,
         source: SourceText,
         tokens: Sequence[Token],
         names: frozenset[str],
@@ -202,7 +173,7 @@ class _Feed:
         repair: bool = True,
     ) -> None:
         """trying: the tokens are a guess, whose faults need no description. repair: ways out are tried."""
-        self.automaton = automaton
+        self.automaton = automaton()
         self.source = source
         self.tokens = tokens
         arguments = self._arguments()
@@ -225,73 +196,62 @@ class _Feed:
     def run(self, start: str) -> tuple[Any, Diagnostic | None, int]:
         """Feed the tokens. Returns: the node or None, the diagnostic or None, how many tokens were used."""
         self.start = start
-        self.state = self.automaton.lark.parse_interactive("", start=start).parser_state
-        tokens = self.tokens
-        if start == "statement" and not self._accepts(tokens[0].type):
+        self.walk = walk = self.automaton.walk(start)
+        self.fed: list[Token] = []
+        tokens, fed = self.tokens, self.fed
+        if start == "statement" and not walk.accepts(tokens[0].type):
             return None, self._problem(0, beginning=True), len(tokens)
         i = 0
         while i < len(tokens):
             token, width = self._read(i)
-            if i and start == "statement" and first_on_line(tokens, i) and self._ends_before(token):
-                return self._rest_is_new(i)
-            if not self._accepts(token.type):
-                return None, self._problem(i), len(tokens)
-            self.state.feed_token(token)
-            self._note_bracket(token)
-            if len(self.state.state_stack) > _TALLEST_STACK or len(self.brackets) > DEEPEST:
+            if not walk.take(token):
+                return self._stopped(i)
+            fed.append(token)
+            if self._nests_too_deep(token):
                 problem = diagnostic("S007", source=self.source, span=span_of(token), deepest=DEEPEST)
                 return None, problem, len(tokens)
             i += width
-        if not self._accepts(_END):
+        if not walk.accepts(END):
             return None, self._problem(len(tokens)), len(tokens)
-        node = self._finish()
-        return node, too_deep(self.source, node), len(tokens)
+        node = walk.finish()
+        return node, self._too_deep(node), len(tokens)
 
-    def _rest_is_new(self, i: int) -> tuple[Any, Diagnostic | None, int]:
-        """End the statement before token `i`, which begins a line that the statement cannot take.
+    def _stopped(self, i: int) -> tuple[Any, Diagnostic | None, int]:
+        """Tell what is wrong at token `i`, which does not fit.
 
-        What follows is a piece of its own: parsed if it begins with a statement's word, else one diagnostic.
+        A statement that is whole ends before it if it begins a line. What follows is then a piece of its own:
+        parsed if it begins with a statement's word, else one diagnostic.
         """
-        node = self._finish()
-        problem = too_deep(self.source, node)
+        new_line = i > 0 and self.start == "statement" and first_on_line(self.tokens, i)
+        if self.trying and not new_line:
+            return None, _GUESS, len(self.tokens)
+        self.walk = self.automaton.walk(self.start)
+        for token in self.fed:
+            self.walk.take(token)
+        if not new_line or not self.walk.accepts(END):
+            return None, self._problem(i), len(self.tokens)
+        node = self.walk.finish()
+        problem = self._too_deep(node)
         if str(self.tokens[i]) in STATEMENT_WORDS:
             return node, problem, i
         return node, problem or self._problem(i, beginning=True), len(self.tokens)
 
-    def _finish(self) -> Any:
-        end = Token.new_borrow_pos(_END, "", self.tokens[-1])
-        return self.state.feed_token(end, True)
+    def _too_deep(self, node: Any) -> Diagnostic | None:
+        """Each level takes a token, so that few statements need a look."""
+        return too_deep(self.source, node) if len(self.fed) > DEEPEST else None
 
-    def _ends_before(self, token: Token) -> bool:
-        return not self._accepts(token.type) and self._accepts(_END)
-
-    def _accepts(self, terminal: str) -> bool:
-        """Tell whether the automaton can take `terminal` now, by a walk over state numbers only."""
-        states = self.state.parse_conf.states
-        stack = self.state.state_stack
-        if terminal not in states[stack[-1]]:
-            return False
-        stack = stack[:]
-        end_state = self.state.parse_conf.end_state
-        while True:
-            found = states[stack[-1]].get(terminal)
-            if found is None:
-                return False
-            action, rule = found
-            if action is Shift:
-                return True
-            size = len(rule.expansion)
-            if size:
-                del stack[-size:]
-            stack.append(states[stack[-1]][rule.origin.name][1])
-            if terminal == _END and stack[-1] == end_state:
-                return True
+    def _nests_too_deep(self, token: Token) -> bool:
+        """Note a bracket; tell whether too many are open, or too much waits for its end."""
+        if token.type in _OPENING:
+            self.brackets.append(token)
+        elif token.type in _CLOSING and self.brackets:
+            self.brackets.pop()
+        return len(self.brackets) > DEEPEST or len(self.walk.states) > _TALLEST_STACK
 
     def _read(self, i: int) -> tuple[Token, int]:
         """Return token `i` as the automaton is to see it, and how many tokens it stands for."""
         token = self.tokens[i]
-        row = self.state.parse_conf.states[self.state.state_stack[-1]]
-        if i and self.tokens[i - 1].type == "NUMBER" and "UNIT" in row and self._is_unit(i):
+        if i and self.tokens[i - 1].type == "NUMBER" and "UNIT" in self.walk.row and self._is_unit(i):
             return self._unit(i)
         if token.type in self.automaton.contextual and not self._is_operator(token, i):
             return Token.new_borrow_pos("NAME", str(token), token), 1
@@ -303,7 +263,7 @@ class _Feed:
         A look at the state's row is not enough: behind the `]` of a window it has the clauses of a signal, whose
         range ends in the same state.
         """
-        if not self._accepts(token.type):
+        if not self.walk.accepts(token.type):
             return False
         is_prefix = token.type in self.automaton.prefix_aliases
         if not is_prefix and token.type not in self.automaton.infix_aliases:
@@ -342,12 +302,6 @@ class _Feed:
         token.end_pos = tokens[end - 1].end_pos
         return token, end - i
 
-    def _note_bracket(self, token: Token) -> None:
-        if token.type in ("LPAR", "LSQB", "LBRACE"):
-            self.brackets.append(token)
-        elif token.type in ("RPAR", "RSQB", "RBRACE") and self.brackets:
-            self.brackets.pop()
-
     def _problem(self, i: int, *, beginning: bool = False) -> Diagnostic:
         """Describe a failure at token `i`, with a way out that works if there is one."""
         if self.trying:
@@ -360,13 +314,12 @@ class _Feed:
         """Tell whether other tokens are one whole statement, or formula."""
         if not tokens:
             return False
-        feed = _Feed(self.automaton, self.source, tokens, self.names, trying=True)
+        feed = _Feed(self.source, tokens, self.names, trying=True)
         _, problem, used = feed.run(self.start)
         return problem is None and used == len(tokens)
 
     def _failure(self, i: int, *, beginning: bool = False) -> Failure:
-        row = self.state.parse_conf.states[self.state.state_stack[-1]]
+        expected = self.walk.expected()
         # After a number a unit always fits: it is named only where nothing else does.
-        expected = frozenset(t for t in row if t.isupper() and self._accepts(t))
         expected = expected - {"UNIT"} or expected
         return Failure(self.source, tuple(self.tokens), i, expected, tuple(self.brackets), beginning, self.names)

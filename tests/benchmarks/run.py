@@ -18,7 +18,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.benchmarks import offline, online, startup
+from tests.benchmarks import offline, online, parsing, startup
 from tests.benchmarks.contest import Arena, OwnFailureError
 from tests.benchmarks.peers.measuring import CoarseClockError, check_clock
 from tests.benchmarks.table import Section, document_of, text_of
@@ -35,6 +35,7 @@ PARTS = {
     "every": online.every,
     "start": online.start,
     "pending": online.pending,
+    "parse": parsing.parsing,
     "compile": startup.compiling,
     "check": startup.checking,
 }
