@@ -65,11 +65,11 @@ class Trace:
         """Shape of every signal."""
         return (self.n_samples,) if self.numbers is None else (self.n_samples, self.n_traces)
 
-    def columns(self, first: int, end: int) -> "Trace":
-        """Return the traces of a batch from number `first` in it up to `end`."""
+    def columns(self, first: int, end: int, n_samples: int) -> "Trace":
+        """Return the first `n_samples` samples of the traces of a batch from number `first` in it up to `end`."""
         assert self.numbers is not None
-        parts = {name: np.ascontiguousarray(values[:, first:end]) for name, values in self.signals.items()}
-        return replace(self, signals=parts, numbers=self.numbers[first:end])
+        parts = {name: np.ascontiguousarray(values[:n_samples, first:end]) for name, values in self.signals.items()}
+        return replace(self, times=self.times[:n_samples], signals=parts, numbers=self.numbers[first:end])
 
     def time(self, sample: int) -> float:
         """Return the time of a sample in the spec's unit, as it was given if it was given."""

@@ -7,6 +7,7 @@ and non-strict comparisons kept apart, and no value is 0. `shown` turns ties int
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -16,6 +17,7 @@ from stlspec.compiler.ir import COMPARISONS, REAL, Node, reachable
 from stlspec.compiler.ranges import TIE as TIE
 from stlspec.semantics import windows
 from stlspec.semantics.expressions import expression_values
+from stlspec.semantics.spans import Span, needed_spans, read_span
 from stlspec.semantics.windows import Grid
 from stlspec.traces import Trace
 
@@ -30,7 +32,7 @@ _TEMPORAL: dict[str, Callable[..., Floats]] = {
     "since": windows.since,
 }
 # Of a batch this many numbers of a signal are evaluated at a time.
-_BATCH = 2**16
+_BATCH = 2**18
 _IN_PLACE = frozenset({"and", "or", "not"})
 """Operators that may write over an operand that nothing else needs."""
 _HOLDS_ON_BOUND = frozenset({"ge", "le", "eq"})
@@ -47,64 +49,104 @@ def evaluate_nodes(nodes: Sequence[Node], roots: Sequence[int], trace: Trace) ->
              `TIE` or -`TIE`: see `shown`.
     Raises:  DataError: a real expression is not a number at some sample.
     """
-    return _evaluate(nodes, roots, trace, [])
+    order, whole = schedule(nodes, roots), (0, trace.n_samples)
+    return _evaluate(_Plan(nodes, roots, order, [whole] * len(nodes)), trace, [])
 
 
 def evaluate_at(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, at: int) -> Floats:
     """Evaluate formulas at one sample of every trace of a batch.
 
-    Paper: as `evaluate_nodes`. The traces are taken some at a time, in arrays that are used again, so that
-    memory does not grow with the batch.
+    Paper: as `evaluate_nodes`. Only the samples that the wanted one depends on are evaluated. The traces are taken
+    some at a time, in arrays that are used again, so that memory does not grow with the batch.
 
     Args:    nodes, roots, trace: as `evaluate_nodes`. at: a sample.
     Returns: (n_roots, n_traces), ties as `TIE` or -`TIE`.
-    Raises:  DataError: a real expression is not a number at some sample.
+    Raises:  DataError: a real expression is not a number at some sample, needed or not.
     """
+    order = schedule(nodes, roots)
+    spans = needed_spans(nodes, order, roots, Grid(trace.times, trace.spacing), at)
+    plan = _Plan(nodes, roots, order, spans)
     result = np.empty((len(roots), trace.n_traces))
     spare: list[Floats] = []
-    for first, part in batches(trace):
-        if spare and spare[0].shape != part.shape:
+    for first, part in batches(trace, plan.end):
+        if spare and spare[0].shape[1] != part.n_traces:
             spare = []
-        values = _evaluate(nodes, roots, part, spare)
-        for row, of_root in zip(result, values, strict=True):
-            row[first : first + part.n_traces] = of_root[at]
-        spare += {id(v): v for i, v in zip(roots, values, strict=True) if nodes[i].op not in REAL}.values()
+        values = _evaluate(plan, part, spare)
+        for row, root, of_root in zip(result, roots, values, strict=True):
+            row[first : first + part.n_traces] = of_root[at - spans[root][0]]
+        spare += {id(v): v for i, v in zip(roots, map(_whole, values), strict=True) if nodes[i].op not in REAL}.values()
     return result
 
 
-def batches(trace: Trace) -> Iterator[tuple[int, Trace]]:
-    """Cut a batch into smaller ones of bounded size; with each the column where it begins."""
-    count = -(-trace.n_samples * trace.n_traces // _BATCH)
+def batches(trace: Trace, n_samples: int | None = None) -> Iterator[tuple[int, Trace]]:
+    """Cut a batch, or its first samples, into smaller ones of bounded size; with each the column where it begins."""
+    n_samples = trace.n_samples if n_samples is None else n_samples
+    count = -(-n_samples * trace.n_traces // _BATCH)
     width = -(-trace.n_traces // count)
     for first in range(0, trace.n_traces, width):
-        yield first, trace.columns(first, first + width)
+        yield first, trace.columns(first, first + width, n_samples)
 
 
-def _evaluate(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, spare: list[Floats]) -> list[Floats]:
-    """Evaluate `roots`; `spare` holds arrays to write to, and takes those that are no longer needed."""
-    needed = schedule(nodes, roots)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    """What to evaluate: the nodes below some roots, children first, and the samples of each that are wanted."""
+
+    nodes: Sequence[Node]
+    roots: Sequence[int]
+    order: Sequence[int]
+    spans: Sequence[Span]
+
+    @property
+    def end(self) -> int:
+        """No sample from here on is wanted of any node."""
+        return max((self.spans[i][1] for i in self.order), default=1)
+
+    @property
+    def longest(self) -> int:
+        """How many samples are wanted of a formula, at most."""
+        spans = (self.spans[i] for i in self.order if self.nodes[i].op not in REAL)
+        return max((end - first for first, end in spans), default=1)
+
+
+def _evaluate(plan: _Plan, trace: Trace, spare: list[Floats]) -> list[Floats]:
+    """Evaluate the roots; `spare` holds arrays to write to, and takes those that are no longer needed."""
+    nodes, spans = plan.nodes, plan.spans
     uses = [0] * len(nodes)
-    for index in chain(roots, *(nodes[i].children for i in needed)):
+    for index in chain(plan.roots, *(nodes[i].children for i in plan.order)):
         uses[index] += 1
-    grid = Grid(trace.times, trace.spacing)
+    grid, shape = Grid(trace.times, trace.spacing), (plan.longest, *trace.shape[1:])
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):
-        for index in needed:
-            node = nodes[index]
-            operands = [values[c] for c in node.children]
+        for index in plan.order:
+            node, (first, end) = nodes[index], spans[index]
+            reads = read_span(node, spans[index], grid)
+            operands = [_cut(values[c], spans[c], reads) for c in node.children]
             if node.op in REAL:
-                values[index] = expression_values(nodes, index, operands, trace)
+                found = expression_values(nodes, index, operands, trace)
+                values[index] = found if node.children else _cut(found, (0, trace.n_samples), spans[index])
             else:
-                ending = [c for c in node.children[:2] if uses[c] == 1] if node.op in _IN_PLACE else []
-                out = values[ending[0]] if ending else spare.pop() if spare else np.empty(trace.shape)
-                values[index] = _formula_values(node, operands, trace, grid, out)
+                pairs = zip(operands[:2], node.children, strict=False) if node.op in _IN_PLACE else ()
+                ending = (operand for operand, child in pairs if uses[child] == 1)
+                out = next(ending, None)
+                out = (spare.pop() if spare else np.empty(shape))[: end - first] if out is None else out
+                values[index] = _formula_values(node, operands, trace, reads, out)
             for child in node.children:
                 uses[child] -= 1
                 if uses[child] == 0:
-                    freed = values.pop(child)
-                    if nodes[child].op not in REAL and freed is not values[index]:
+                    freed = _whole(values.pop(child))
+                    if nodes[child].op not in REAL and freed is not _whole(values[index]):
                         spare.append(freed)
-    return [values[r] if nodes[r].op not in REAL else np.broadcast_to(values[r], trace.shape) for r in roots]
+    return [values[r] if nodes[r].op not in REAL else np.broadcast_to(values[r], trace.shape) for r in plan.roots]
+
+
+def _cut(values: Floats, own: Span, wanted: Span) -> Floats:
+    """Return the wanted samples of those that there are; constants have none."""
+    return values if values.ndim == 0 else values[wanted[0] - own[0] : wanted[1] - own[0]]
+
+
+def _whole(values: Floats) -> Floats:
+    """Return the array that the values of a formula were written to, some of its rows or all."""
+    return values if values.base is None else np.asarray(values.base)
 
 
 def needed_nodes(nodes: Sequence[Node], roots: Sequence[int]) -> list[int]:
@@ -136,12 +178,13 @@ def shown(values: Floats) -> Floats:
     return result
 
 
-def _formula_values(node: Node, operands: list[Floats], trace: Trace, grid: Grid, out: Floats) -> Floats:
-    op = node.op
+def _formula_values(node: Node, operands: list[Floats], trace: Trace, reads: Span, out: Floats) -> Floats:
+    """Write a formula's values to `out`, given those of its operands at the samples that it reads."""
+    op, samples = node.op, slice(*reads)
     if op in COMPARISONS:
         compare(op, operands[0], operands[1], out)
     elif op in _TEMPORAL:
-        _TEMPORAL[op](*operands, grid, node.interval, out)
+        _TEMPORAL[op](*operands, Grid(trace.times[samples], trace.spacing), node.interval, out)
     elif op in ("and", "or"):
         extremum = np.minimum if op == "and" else np.maximum
         extremum(operands[0], operands[1], out=out)
@@ -150,13 +193,11 @@ def _formula_values(node: Node, operands: list[Floats], trace: Trace, grid: Grid
     elif op == "not":
         np.negative(operands[0], out=out)
     elif op == "next":
-        out[:-1] = operands[0][1:]
-        out[-1] = -np.inf
+        windows.shift(operands[0], 1, -np.inf, out)
     elif op == "prev":
-        out[1:] = operands[0][:-1]
-        out[0] = -np.inf
+        windows.shift(operands[0][::-1], 1, -np.inf, out[::-1])
     elif op == "bool":
-        out[...] = np.where(trace.signals[str(node.value)] != 0, np.inf, -np.inf)
+        out[...] = np.where(trace.signals[str(node.value)][samples] != 0, np.inf, -np.inf)
     else:
         out[...] = np.inf if op == "true" else -np.inf
     return out

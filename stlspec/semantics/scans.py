@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 _SMALL = 4096
 _BLOCK = 2**16
 _STEPS = 32
-_MANY_TRACES = 128
+_MANY_TRACES = 64
 
 
 def suffix_extremum(extremum: np.ufunc, values: Floats, out: Floats) -> None:

@@ -1,8 +1,9 @@
 """Sliding windows: always, eventually, until and their past mirrors, for a whole signal at once.
 
 In: robustness at every sample, (n_samples,) or time-major (n_samples, n_traces), the times, an interval in
-ticks. Out: the operator's robustness at every sample. The past operators are the future ones on views that
-run backwards in time, so there is one kernel of each kind and no special case for the past.
+ticks. Out: the operator's robustness at every sample, or at the first few (the last few of a past operator). The
+past operators are the future ones on views that run backwards in time, so there is one kernel of each kind and no
+special case for the past.
 """
 
 from dataclasses import dataclass
@@ -43,8 +44,9 @@ def always(values: Floats, grid: Grid, interval: Interval, out: Floats | None = 
     Paper: robustness of always.
 
     Args:    values: (n_samples,) or (n_samples, n_traces). interval: closed, ticks ahead; (low, None) has no
-             end. out: where to write, not overlapping `values`; None: a new array.
-    Returns: the shape of `values`.
+             end. out: where to write, not overlapping `values`; it may be shorter, to have the first samples
+             only; None: a new array.
+    Returns: `out`, or the shape of `values`.
     """
     return _slide(np.minimum, values, grid, interval, out)
 
@@ -55,20 +57,20 @@ def eventually(values: Floats, grid: Grid, interval: Interval, out: Floats | Non
     Paper: robustness of eventually.
 
     Args:    as `always`.
-    Returns: the shape of `values`.
+    Returns: as `always`.
     """
     return _slide(np.maximum, values, grid, interval, out)
 
 
 def historically(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
-    """Return `always` backwards in time; not in the paper, which has no past operators."""
+    """Return `always` backwards in time, a short `out` the last samples; not in the paper, which has no past."""
     out = np.empty(values.shape) if out is None else out
     always(values[::-1], grid.reversed(), interval, out[::-1])
     return out
 
 
 def once(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
-    """Return `eventually` backwards in time; not in the paper, which has no past operators."""
+    """Return `eventually` backwards in time, a short `out` the last samples; not in the paper, which has no past."""
     out = np.empty(values.shape) if out is None else out
     eventually(values[::-1], grid.reversed(), interval, out[::-1])
     return out
@@ -82,19 +84,20 @@ def until(left: Floats, right: Floats, grid: Grid, interval: Interval, out: Floa
     after t + b, then p holds as well up to any sample of the window, and F[a,b] q names one.
 
     Args:    left, right: (n_samples,) or (n_samples, n_traces). interval, out: as `always`.
-    Returns: the shape of `left`.
+    Returns: `out`, or the shape of `left`.
     """
     low, high = interval
     out = np.empty(left.shape) if out is None else out
-    if low == 0 and high is None:
-        suffix_until(_columns(left), _columns(right), _columns(out))
+    unbounded = low == 0 and high is None and len(out) == len(left)
+    onward = out if unbounded else np.empty(left.shape)
+    suffix_until(_columns(left), _columns(right), _columns(onward))
+    if unbounded:
         return out
-    scratch = np.empty(left.shape)
-    suffix_until(_columns(left), _columns(right), _columns(scratch))
     if grid.spacing is None:
-        _until_uneven(left, right, index_windows(grid, interval), scratch, out)
+        _until_uneven(left, right, index_windows(grid, interval), onward, out)
         return out
-    _shift(scratch, -(-low // grid.spacing), -np.inf, out)
+    shift(onward, -(-low // grid.spacing), -np.inf, out)
+    scratch = onward[: len(out)]
     if low > 0:
         np.minimum(out, always(left, grid, (0, low - 1), scratch), out=out)
     if high is not None:
@@ -153,13 +156,14 @@ def _columns(values: Floats) -> Floats:
 
 def _slide(extremum: np.ufunc, values: Floats, grid: Grid, interval: Interval, out: Floats | None) -> Floats:
     out = np.empty(values.shape) if out is None else out
+    low, high = interval
     if grid.spacing is not None:
-        low, high = interval
-        last = None if high is None else high // grid.spacing
-        _slide_even(extremum, _columns(values), -(-low // grid.spacing), last, _columns(out))
+        first = -(-low // grid.spacing)
+        width = None if high is None else high // grid.spacing - first + 1
+        _slide_even(extremum, _columns(values[first:]), width, _columns(out))
         return out
     begin, end = index_windows(grid, interval)
-    if interval[1] is None:
+    if high is None:
         suffixes = np.empty(values.shape)
         suffix_extremum(extremum, _columns(values), _columns(suffixes))
         _gather(suffixes, begin, _identity(extremum), out)
@@ -172,25 +176,26 @@ def _identity(extremum: np.ufunc) -> float:
     return np.inf if extremum is np.minimum else -np.inf
 
 
-def _slide_even(extremum: np.ufunc, values: Floats, first: int, last: int | None, out: Floats) -> None:
-    """Slide over samples i + first to i + last."""
-    n = len(values)
-    if first >= n or (last is not None and last < first):
-        out[...] = _identity(extremum)
-        return
-    out[n - first :] = _identity(extremum)
-    values, out = values[first:], out[: n - first]
-    if last is None or last - first + 1 >= len(values):
-        suffix_extremum(extremum, values, out)
-        return
-    width = last - first + 1
-    n_whole = len(values) - width + 1
-    narrow = width < _WIDE
-    slide = _whole_windows if narrow else _widest_windows if width - _PIECE > n_whole else _wide_windows
-    slide(extremum, values, width, out[:n_whole])
-    if width > 1:
+def _slide_even(extremum: np.ufunc, values: Floats, width: int | None, out: Floats) -> None:
+    """Slide over `width` samples from sample i on, or all from there on; what is beyond the end is not there."""
+    n = 0 if width is not None and width < 1 else min(len(values), len(out))
+    out[n:] = _identity(extremum)
+    n_whole = 0
+    if width is not None and 0 < width < len(values):
+        n_whole = min(n, len(values) - width + 1)
+        slide = _widest_windows if width > n_whole else _whole_windows if width < _WIDE else _wide_windows
+        slide(extremum, values[: n_whole + width - 1], width, out[:n_whole])
+    if n_whole < n:
         # The windows that the end of the trace cuts off are suffixes.
-        suffix_extremum(extremum, values[n_whole:], out[n_whole:])
+        _suffixes(extremum, values[n_whole:], out[n_whole:n])
+
+
+def _suffixes(extremum: np.ufunc, values: Floats, out: Floats) -> None:
+    """Slide over all samples from sample i on; `out` may be shorter than `values`."""
+    n = len(out)
+    suffix_extremum(extremum, values[:n], out)
+    if n < len(values):
+        extremum(out, extremum.reduce(values[n:], axis=0), out=out)
 
 
 def _whole_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -> None:
@@ -249,8 +254,7 @@ def _wide_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -
 def _widest_windows(extremum: np.ufunc, values: Floats, width: int, out: Floats) -> None:
     """Slide windows that all share their middle: before it a suffix, behind it what is read up to there."""
     n = len(out)
-    suffix_extremum(extremum, values[:n], out)
-    extremum(out, extremum.reduce(values[n:width], axis=0), out=out)
+    _suffixes(extremum, values[:width], out)
     behind = np.empty((n - 1, out.shape[1]))
     if n > 1:
         suffix_extremum(extremum, values[: width - 1 : -1], behind[::-1])
@@ -270,6 +274,7 @@ def _per_stride(extremum: np.ufunc, values: Floats, out: Floats) -> None:
 def _slide_uneven(extremum: np.ufunc, values: Floats, begin: Ints, end: Ints, out: Floats) -> None:
     """Slide over the samples begin[i] to end[i], block by block."""
     n, k = out.shape
+    begin, end = begin[:n], end[:n]
     rows = max(3 * int((end - begin).max()), _BLOCK // k, 1)
     for top in range(0, n, rows):
         block = slice(top, top + rows)
@@ -313,22 +318,25 @@ def _until_uneven(left: Floats, right: Floats, window: tuple[Ints, Ints], onward
     """Write until, given the windows and, in `onward` (overwritten), until without bounds."""
     begin, end = window
     _gather(onward, begin, -np.inf, out)
-    index = np.arange(len(begin), dtype=np.int64)
-    _slide_uneven(np.minimum, _columns(left), index, begin, _columns(onward))
-    np.minimum(out, onward, out=out)
-    _slide_uneven(np.maximum, _columns(right), begin, end, _columns(onward))
-    np.minimum(out, onward, out=out)
+    scratch = onward[: len(out)]
+    _slide_uneven(np.minimum, _columns(left), np.arange(len(begin), dtype=np.int64), begin, _columns(scratch))
+    np.minimum(out, scratch, out=out)
+    _slide_uneven(np.maximum, _columns(right), begin, end, _columns(scratch))
+    np.minimum(out, scratch, out=out)
 
 
-def _shift(values: Floats, count: int, beyond: float, out: Floats) -> None:
-    """Write values[i + count] to out[i], `beyond` past the end."""
-    kept = len(values) - min(count, len(values))
-    out[:kept] = values[len(values) - kept :]
+def shift(values: Floats, count: int, beyond: float, out: Floats) -> None:
+    """Write values[i + count] to out[i], `beyond` past the end.
+
+    Paper: none; `next` shifts by one sample.
+    """
+    kept = max(0, min(len(out), len(values) - count))
+    out[:kept] = values[count : count + kept]
     out[kept:] = beyond
 
 
 def _gather(values: Floats, index: Ints, beyond: float, out: Floats) -> None:
     """Write values[index[i]] to out[i], `beyond` where the index is past the end."""
-    n_inside = int(np.searchsorted(index, len(values)))
+    n_inside = int(np.searchsorted(index[: len(out)], len(values)))
     out[:n_inside] = values[index[:n_inside]]
     out[n_inside:] = beyond

@@ -1,13 +1,17 @@
 """The engine agrees with the definition; ties carry the verdict in their sign."""
 
+import random
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stlspec import api
-from stlspec.compiler.ir import Builder
-from stlspec.semantics.robustness import TIE, evaluate_nodes, needed_nodes, schedule, shown
+from stlspec.compiler.ir import REAL, Builder
+from stlspec.errors import DataError
+from stlspec.semantics import robustness
+from stlspec.semantics.robustness import TIE, evaluate_at, evaluate_nodes, needed_nodes, schedule, shown
 from stlspec.traces import make_trace
 from tests.oracle import disagreement, main
 from tests.strategies import DECLARED, STEP, cases, random_case, random_signals, seeded_cases
@@ -91,6 +95,49 @@ def test_a_batch_equals_its_traces_bit_for_bit(rng, n_traces):
         return
     together = evaluate_nodes(case.nodes, [case.root], make_trace(case.base, DECLARED, batch, time))[0]
     assert together.tobytes() == np.stack(alone, axis=1).tobytes()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_sample_has_the_bits_that_it_has_among_all(seed, monkeypatch):
+    rng = random.Random(seed)
+    monkeypatch.setattr(robustness, "_BATCH", 64)
+    compared = 0
+    for _ in range(150):
+        case = random_case(rng, 5, 30)
+        n = len(case.times)
+        several = [random_signals(rng, n) for _ in range(4)]
+        time = None if case.base.kind == "step" else [t / 10 for t in case.times]
+        trace = make_trace(case.base, DECLARED, {name: [s[name] for s in several] for name in case.signals}, time)
+        formulas = [i for i, node in enumerate(case.nodes) if node.op not in REAL]
+        roots = [case.root, *rng.sample(formulas, min(2, len(formulas)))]
+        try:
+            whole = evaluate_nodes(case.nodes, roots, trace)
+        except DataError as refusal:
+            # What is refused does not depend on what is asked.
+            with pytest.raises(DataError) as found:
+                evaluate_at(case.nodes, roots, trace, rng.randrange(n))
+            assert found.value.diagnostics[0].code == refusal.diagnostics[0].code
+            continue
+        compared += 1
+        for at in {0, n - 1, rng.randrange(n)}:
+            expected = np.stack([values[at] for values in whole])
+            assert evaluate_at(case.nodes, roots, trace, at).tobytes() == expected.tobytes()
+    assert compared > 50
+
+
+def test_a_sample_without_a_value_is_refused_where_it_decides_nothing():
+    bundle = api.compile("signal x\nhard a: always[0,1] (sqrt(x) >= 0)\n")
+    with pytest.raises(DataError, match="sample 3 of trace 1"):
+        bundle.evaluate({"x": [[1.0] * 5, [1.0, 1.0, 1.0, -1.0, 1.0]]})
+
+
+def test_only_what_the_wanted_sample_needs_is_computed(monkeypatch):
+    bundle = api.compile("signal x\nhard a: always[0,3] eventually[0,2] (x >= 0)\nhard b: once[0,2] (x >= 0)\n")
+    seen = []
+    compare = robustness.compare
+    monkeypatch.setattr(robustness, "compare", lambda *given: (seen.append(given[3].shape), compare(*given)))
+    bundle.evaluate({"x": np.ones((2, 1000))})
+    assert seen == [(6, 2)]
 
 
 def test_several_roots_share_their_nodes_and_keep_their_own_values():

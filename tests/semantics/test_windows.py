@@ -61,6 +61,31 @@ def test_windows_hold_the_samples_in_their_interval(interval, grid, columns):
 
 
 @pytest.mark.parametrize("interval", INTERVALS)
+@pytest.mark.parametrize("grid", [even(60), even(60, 3), uneven(60), uneven(1)])
+@pytest.mark.parametrize("count", [1, 2, 7, 59])
+def test_a_short_out_takes_the_first_samples_and_the_last_of_a_past_operator(interval, grid, count):
+    n = len(grid.times)
+    count = min(count, n)
+    left, right = samples((n, 2), 1), samples((n, 2), 2)
+    for future, past in ((windows.always, windows.historically), (windows.eventually, windows.once)):
+        out = np.empty((count, 2))
+        assert np.array_equal(future(left, grid, interval, out), future(left, grid, interval)[:count])
+        assert np.array_equal(past(left, grid, interval, out), past(left, grid, interval)[n - count :])
+    out = np.empty((count, 2))
+    expected = windows.until(left, right, grid, interval)[:count]
+    assert np.array_equal(windows.until(left, right, grid, interval, out), expected)
+    expected = windows.since(left, right, grid, interval)[n - count :]
+    assert np.array_equal(windows.since(left, right, grid, interval, out), expected)
+
+
+@pytest.mark.parametrize(("count", "expected"), [(0, [1, 2, 3]), (1, [2, 3, 9]), (3, [9, 9, 9]), (10**20, [9, 9, 9])])
+def test_a_shift_brings_later_samples_and_what_is_beyond_the_end(count, expected):
+    out = np.zeros(3)
+    windows.shift(np.array([1.0, 2.0, 3.0]), count, 9.0, out)
+    assert out.tolist() == expected
+
+
+@pytest.mark.parametrize("interval", INTERVALS)
 @pytest.mark.parametrize("grid", [even(40), even(40, 3), uneven(40), even(1), uneven(1)])
 def test_until_and_since_count_left_up_to_but_not_at_the_switch(interval, grid):
     left, right = samples(len(grid.times), 1), samples(len(grid.times), 2)
