@@ -22,6 +22,7 @@ from stlspec.cli import (
     formatting,
     importing,
     language,
+    lsp,
     monitoring,
     recording,
     testing,
@@ -68,6 +69,7 @@ def build() -> typer.Typer:
     app.command("import")(importing.import_spec)
     app.command("record")(recording.record)
     app.command("conform")(conformance.conform)
+    app.command("lsp")(lsp.lsp)
     return app
 
 

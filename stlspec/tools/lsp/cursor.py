@@ -1,0 +1,67 @@
+"""The words around a place, whether or not the statement there can be parsed.
+
+In: a text and an offset. Out: the tokens of the statement around it, or of its part before it. Only that statement is
+lexed: the text is cut at lines that begin as a statement does.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from stlspec.lang.parse import tokens_of
+from stlspec.lang.statements import STATEMENT_WORDS
+from stlspec.lang.tree import span_of
+from stlspec.source import SourceText, Span
+
+_RESERVED = "|".join(word for word in STATEMENT_WORDS if word not in ("spec", "use", "time"))
+_BEGINNING = re.compile(
+    rf"^[ \t]*(?:(?:{_RESERVED})\b|time[ \t]*(?:$|[\d.]|(?:step|[num]?s|min|h)\b)"
+    r"|spec[ \t]*(?:$|[A-Za-z_])|use[ \t]*(?:$|\"))",
+    re.MULTILINE,
+)
+_WORD_BEFORE = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A token of the lexer: its terminal, its text, and where it stands in the whole text."""
+
+    kind: str
+    text: str
+    span: Span
+
+
+def statement_at(text: str, offset: int) -> Span:
+    """Return the stretch from the last line that begins a statement, up to the next one."""
+    start, end = 0, len(text)
+    for match in _BEGINNING.finditer(text):
+        if match.start() > offset:
+            end = match.start()
+            break
+        start = match.start()
+    return Span(start, end)
+
+
+def tokens_in(source: SourceText, span: Span) -> tuple[Token, ...]:
+    """Return the tokens of a stretch of a text, comments left out."""
+    found = tokens_of(SourceText(source.name, source.slice(span)))
+    spans = [span_of(token) for token in found]
+    return tuple(
+        Token(token.type, str(token), Span(at.start + span.start, at.end + span.start))
+        for token, at in zip(found, spans, strict=True)
+    )
+
+
+def token_at(source: SourceText, offset: int) -> Token | None:
+    """Return the token at an offset, or that which ends there; None in a comment or between tokens."""
+    tokens = tokens_in(source, statement_at(source.text, offset))
+    touching = [token for token in tokens if token.span.start <= offset <= token.span.end]
+    return touching[-1] if touching else None
+
+
+def before(source: SourceText, offset: int) -> tuple[str, Sequence[Token]]:
+    """Return the word that is being typed at an offset, and the tokens before it in its statement."""
+    start = statement_at(source.text, offset).start
+    match = _WORD_BEFORE.search(source.text, start, offset)
+    word = match[0] if match else ""
+    return word, tokens_in(source, Span(start, offset - len(word)))

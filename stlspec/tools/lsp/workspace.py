@@ -1,0 +1,180 @@
+"""What is open in an editor, reviewed: each buffer with the files that it uses, open ones as they stand there.
+
+In: buffers that open, change and close. Out: for each its syntax, its model and what `check` would report, worked out
+when first asked for and kept until one of the files that it rests on changes; and what is to be shown in which file.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from stlspec.compiler import files
+from stlspec.compiler.model import Model
+from stlspec.compiler.review import review_syntax
+from stlspec.compiler.selection import Selection, configured
+from stlspec.errors import Diagnostic, InputError
+from stlspec.lang.parse import Syntax, parse
+from stlspec.lang.using import Parser, identity, parse_with_uses
+from stlspec.source import SourceText, Span
+from stlspec.tools.lsp.documents import Change, Document, uri_of
+from stlspec.tools.lsp.positions import DEFAULT, Encoding, Lines, Place
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """A stretch of a file, as the editor names files and counts places."""
+
+    uri: str
+    start: Place
+    end: Place
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reviewed:
+    """All that is known of one buffer.
+
+    syntax, model: None if its text is refused. rests_on: the identity of every file that was asked for.
+    """
+
+    document: Document
+    diagnostics: tuple[Diagnostic, ...]
+    syntax: Syntax | None = None
+    model: Model | None = None
+    rests_on: frozenset[str] = frozenset()
+
+    @property
+    def errors(self) -> bool:
+        """Whether something keeps the spec from being compiled."""
+        return any(found.severity == "error" for found in self.diagnostics)
+
+
+class Workspace:
+    """The open buffers, by URI."""
+
+    def __init__(self, encoding: Encoding = DEFAULT, parsed: Parser = parse) -> None:
+        self.encoding = encoding
+        self._parse = parsed
+        self._documents: dict[str, Document] = {}
+        self._reviewed: dict[str, Reviewed] = {}
+        self._lines: dict[str, Lines] = {}
+
+    @property
+    def documents(self) -> tuple[Document, ...]:
+        """The open buffers, in the order in which they were opened."""
+        return tuple(self._documents.values())
+
+    def open(self, uri: str, version: int, text: str) -> None:
+        """Take in a buffer that an editor opens."""
+        self._put(Document.opened(uri, version, text, self.encoding))
+
+    def change(self, uri: str, version: int, changes: Iterable[Change]) -> None:
+        """Change a buffer; one that was never opened is not known and stays so."""
+        if uri in self._documents:
+            self._put(self._documents[uri].changed(version, changes))
+
+    def close(self, uri: str) -> None:
+        """Forget a buffer: what the others use is the file on disk again."""
+        document = self._documents.pop(uri, None)
+        if document is not None:
+            self._forget(document)
+
+    def refresh(self) -> None:
+        """Forget all reviews: files on disk have changed, specs or settings."""
+        self._reviewed.clear()
+        self._lines.clear()
+
+    def _put(self, document: Document) -> None:
+        self._documents[document.uri] = document
+        self._forget(document)
+
+    def _forget(self, document: Document) -> None:
+        """Forget the reviews that rest on a buffer."""
+        self._reviewed.pop(document.uri, None)
+        self._lines.clear()
+        if document.is_file:
+            key = identity(document.name)
+            for uri in [uri for uri, known in self._reviewed.items() if key in known.rests_on]:
+                del self._reviewed[uri]
+
+    def reviewed(self, uri: str) -> Reviewed | None:
+        """Return what is known of a buffer; None if it is not open."""
+        document = self._documents.get(uri)
+        if document is None:
+            return None
+        if uri not in self._reviewed:
+            self._reviewed[uri] = self._review(document)
+        return self._reviewed[uri]
+
+    def stale(self) -> bool:
+        """Tell whether some open buffer has no review that holds."""
+        return self._documents.keys() != self._reviewed.keys()
+
+    def _review(self, document: Document) -> Reviewed:
+        if document.source is None:
+            return Reviewed(document, (document.refusal,) if document.refusal else ())
+        selection, problems = _settings(document)
+        rests_on: set[str] = set()
+        load = partial(self._load, rests_on) if document.is_file else None
+        syntax = parse_with_uses(document.source, load, self._parse)
+        review = review_syntax(syntax, None, selection)
+        found = (*problems, *review.diagnostics)
+        return Reviewed(document, found, syntax, review.result.model, frozenset(rests_on))
+
+    def parsed(self, path: str) -> Syntax:
+        """Parse a file and what it uses, open ones as they stand in the editor.
+
+        Raises: InputError: it cannot be read.
+        """
+        load = partial(self._load, set[str]())
+        return parse_with_uses(load(path), load, self._parse)
+
+    def _load(self, asked: set[str], path: str) -> SourceText:
+        """Return the text of a file: of its buffer if it is open."""
+        key = identity(path)
+        asked.add(key)
+        document = self._open_at(key)
+        if document is None:
+            return files.read_used(path)
+        if document.source is None:
+            raise InputError([document.refusal] if document.refusal else [])
+        return document.source if document.name == path else SourceText(path, document.source.text)
+
+    def _open_at(self, key: str) -> Document | None:
+        return next((d for d in self._documents.values() if d.is_file and identity(d.name) == key), None)
+
+    def location(self, source: SourceText, span: Span) -> Location:
+        """Return where a stretch of a text is in the editor."""
+        document = self._documents.get(source.name) or self._open_at(identity(source.name))
+        if document is not None and document.source is not None and document.source.text == source.text:
+            return Location(document.uri, *document.places(span))
+        if source.name not in self._lines or self._lines[source.name].text != source.text:
+            self._lines[source.name] = Lines(source.text, self.encoding)
+        lines = self._lines[source.name]
+        return Location(uri_of(source.name), lines.place(span.start), lines.place(span.end))
+
+    def uri(self, name: str) -> str:
+        """Return the URI of a file, as the editor names it if it is open."""
+        document = self._documents.get(name) or self._open_at(identity(name))
+        return document.uri if document is not None else uri_of(name)
+
+    def findings(self) -> dict[str, tuple[Diagnostic, ...]]:
+        """Return what is to be shown in each file, by URI: every open one, and those used that have problems."""
+        shown: dict[str, dict[Diagnostic, None]] = {uri: {} for uri in self._documents}
+        for uri in self._documents:
+            known = self.reviewed(uri)
+            assert known is not None
+            for found in known.diagnostics:
+                home = uri if found.source is None else self.uri(found.source.name)
+                shown.setdefault(home, {})[found] = None
+        return {uri: tuple(found) for uri, found in shown.items()}
+
+
+def _settings(document: Document) -> tuple[Selection, tuple[Diagnostic, ...]]:
+    """Return the settings that hold for a buffer; what is wrong with them is said, and the default holds."""
+    if not document.is_file:
+        return Selection(), ()
+    try:
+        return configured(Path(document.name)), ()
+    except InputError as error:
+        return Selection(), error.diagnostics
