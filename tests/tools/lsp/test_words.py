@@ -4,7 +4,7 @@ from stlspec.compiler.checks import BOUNDINGS
 from stlspec.compiler.compiling import check_source
 from stlspec.compiler.expectations import LABELS
 from stlspec.compiler.inference import FUNCTIONS
-from stlspec.lang.parse import _CLAUSES
+from stlspec.lang.automaton import _CLAUSES
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS
 from stlspec.lang.tree import OPERATORS
 from stlspec.source import SourceText
