@@ -307,10 +307,10 @@ def _weights(
     above = ancestors(edges)
     names = list(edges)
     hard = [name for name in names if declared.requirements[name].strength == "hard"]
-    hard_bits = sum(1 << i for i, name in enumerate(names) if declared.requirements[name].strength == "hard")
     for name in names if hard else []:
         requirement = declared.requirements[name]
-        if requirement.strength == "soft" and not above[name] & hard_bits:
+        # What depends on such a one, and on no hard one either, is mended with it.
+        if requirement.strength == "soft" and not above[name]:
             span = requirement.name.span
             problems.append(diagnostic("G505", source=source, span=span, name=name, hard=hard[0]))
     weights = softmax(dependency_weights(list(above.values())))

@@ -82,11 +82,23 @@ def needs_brackets(parent: Expression, child: Expression, *, last: bool) -> bool
 def tools_disagree(parent: Expression, child: Expression, *, last: bool) -> bool:
     """Tell whether `child` of `parent`, written without brackets, is read in another way by other tools.
 
-    Of what `needs_brackets` is true of, comparisons under an operator and `and` under `or` are read alike.
+    Of what `needs_brackets` is true of, comparisons under an operator, `and` under `or`, and a temporal operator
+    behind which nothing follows are read alike.
     """
     if not isinstance(parent, Infix) or not needs_brackets(parent, child, last=last):
         return False
-    return not (isinstance(child, Infix) and child.operators[0].word == "and" and parent.operators[0].word == "or")
+    if not isinstance(child, Infix):
+        return not last
+    if not last and _ends_open(child):
+        return True
+    return not (child.operators[0].word == "and" and parent.operators[0].word == "or")
+
+
+def _ends_open(node: Expression) -> bool:
+    """Tell whether the last operand begins with a temporal operator: `p and always q`."""
+    while isinstance(node, Infix):
+        node = node.operands[-1]
+    return _reaches_on(node)
 
 
 def _reaches_on(node: Expression) -> bool:

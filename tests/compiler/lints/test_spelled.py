@@ -15,7 +15,10 @@ def mixes(formula):
     return [d for d in found if d.code == "L613"]
 
 
-@pytest.mark.parametrize("formula", ["G p & q", "p & q -> r", "p until q and r", "(always p) and eventually q or r"])
+@pytest.mark.parametrize(
+    "formula",
+    ["G p & q", "p & q -> r", "p until q and r", "(always p) and eventually q or r", "p and eventually q or r"],
+)
 def test_a_mix_is_reported_once_and_its_fix_keeps_the_meaning(formula):
     (found,) = mixes(formula)
     before, after = found.source.text, found.fixes[0].applied(found.source.text)
@@ -27,7 +30,15 @@ def test_a_mix_is_reported_once_and_its_fix_keeps_the_meaning(formula):
 
 @pytest.mark.parametrize(
     "formula",
-    ["always (p and q)", "p and q or r", "always x > 5", "not p and q", "p implies always q", "p and q and r"],
+    [
+        "(once p) implies eventually q",
+        "always (p and q)",
+        "p and q or r",
+        "always x > 5",
+        "not p and q",
+        "p implies always q",
+        "p and q and r",
+    ],
 )
 def test_what_all_tools_read_alike_is_left_alone(formula):
     assert mixes(formula) == []
