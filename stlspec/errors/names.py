@@ -176,4 +176,17 @@ CODES: tuple[Code, ...] = (
         bad="signal d\nsignal e\nhard safe: always (d > e)\nexpect safe holds on {d: [2]}\n",
         good="signal d\nsignal e\nhard safe: always (d > e)\nexpect safe holds on {d: [2], e: [1]}\n",
     ),
+    Code(
+        "N118",
+        "a name that cannot be given",
+        "error",
+        message="{what}",
+        help="{help}",
+        explanation="An editor renames only if the specs say the same afterwards: nothing else is called so where the "
+        "old name is seen, no template hides the new one, and no operator or function is spelled so. Statements that "
+        "cannot be read may mean either name, so they are mended first.",
+        bad="# renaming `d` to `always`, or to the name of another signal",
+        good="# renaming `d` to `distance`",
+        kind="shown",
+    ),
 )

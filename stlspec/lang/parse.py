@@ -154,6 +154,14 @@ def parse_formula(
     return node, (problem,) if problem else ()
 
 
+def following(tokens: Sequence[Token], names: frozenset[str]) -> frozenset[str]:
+    """Return the terminals that may follow the beginning of a statement; none if it is broken already.
+
+    Not in the paper: for editors. An alias at the end counts as an operator: an operand may be about to come.
+    """
+    return _Feed(SourceText("", ""), tokens, names, trying=True).following()
+
+
 def _repeated(source: SourceText, statement: Statement) -> list[Diagnostic]:
     if not isinstance(statement, SignalStatement | RequirementStatement | VerdictExpectation):
         return []
@@ -215,6 +223,19 @@ class _Feed:
             return None, self._problem(len(tokens)), len(tokens)
         node = walk.finish()
         return node, self._too_deep(node), len(tokens)
+
+    def following(self) -> frozenset[str]:
+        """Feed the tokens as the beginning of a statement, and return what fits behind them."""
+        self.walk = self.automaton.walk("statement")
+        end = len(self.tokens)
+        self.tokens = [*self.tokens, *(Token.new_borrow_pos("NAME", "_", token) for token in self.tokens[-1:])]
+        i = 0
+        while i < end:
+            token, width = self._read(i)
+            if not self.walk.take(token):
+                return frozenset()
+            i += width
+        return self.walk.expected()
 
     def _stopped(self, i: int) -> tuple[Any, Diagnostic | None, int]:
         """Tell what is wrong at token `i`, which does not fit.

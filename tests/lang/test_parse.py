@@ -7,7 +7,7 @@ import pytest
 
 from stlspec.compiler.compiling import check_source, compile_source
 from stlspec.errors import SpecError
-from stlspec.lang.parse import DEEPEST, parse, parse_formula
+from stlspec.lang.parse import DEEPEST, following, parse, parse_formula, tokens_of
 from stlspec.source import SourceText
 from tests.lang.generate import disagreement
 from tests.lang.mutate import run
@@ -180,3 +180,30 @@ def test_a_spec_with_errors_carries_all_of_them_in_order():
     with pytest.raises(SpecError) as caught:
         compile_source(SourceText.of("s", "signal x\nhard a: x\nhard b: y > 1\nhrad c"))
     assert [d.code for d in caught.value.diagnostics] == ["T201", "N101", "S003"]
+
+
+@pytest.mark.parametrize(
+    ("text", "fits", "not_"),
+    [
+        ("", {"SIGNAL", "TIME"}, {"NAME", "$END"}),
+        ("signal x", {"COLON", "UNIT_WORD", "IN", "FROM", "STRING", "$END"}, {"NAME", "AND"}),
+        ("hard a depends on", {"NAME"}, {"NOT", "NUMBER"}),
+        ("hard a:", {"NAME", "NOT", "ALWAYS", "NUMBER", "LPAR"}, {"AND", "$END"}),
+        ("hard a: G", {"LSQB", "NAME", "NOT"}, {"AND", "$END"}),
+        ("let G = x\nhard a: G".splitlines()[1], {"LSQB"}, {"AND"}),
+        ("hard a: x > 5", {"UNIT", "AND", "PLUS", "$END"}, {"NOT"}),
+        ("hard a: x U", {"NAME", "NOT", "LSQB"}, {"AND"}),
+        ("hard a: (x > 1", {"RPAR", "AND"}, {"$END"}),
+        ("hard a: (x >> 1", set(), {"NAME", "$END"}),
+        ("expect a", {"HOLDS", "FAILS"}, {"NAME"}),
+    ],
+)
+def test_what_fits_behind_the_beginning_of_a_statement(text, fits, not_):
+    found = following(tokens_of(SourceText.of("s", text)), frozenset())
+    assert fits <= found
+    assert not found & not_
+
+
+def test_a_declared_alias_is_a_name_where_it_is_typed():
+    tokens = tokens_of(SourceText.of("s", "hard a: G"))
+    assert "AND" in following(tokens, frozenset({"G"}))

@@ -9,13 +9,41 @@ from lsprotocol import types
 
 from stlspec.errors import Diagnostic, Edit
 from stlspec.source import SourceText
+from stlspec.tools.lsp.completion import Item
 from stlspec.tools.lsp.documents import Change
+from stlspec.tools.lsp.edits import Action
+from stlspec.tools.lsp.outline import Symbol
 from stlspec.tools.lsp.positions import Place
 from stlspec.tools.lsp.workspace import Location, Workspace
 
 SOURCE = "stlspec"
 _UNUSED = ("L615", "L616", "L617", "L618")
 """Codes of what could be left out; editors show it faded."""
+_ITEM_KINDS = {
+    "signal": types.CompletionItemKind.Variable,
+    "param": types.CompletionItemKind.Constant,
+    "let": types.CompletionItemKind.Function,
+    "requirement": types.CompletionItemKind.Property,
+    "argument": types.CompletionItemKind.Variable,
+    "word": types.CompletionItemKind.Keyword,
+    "function": types.CompletionItemKind.Function,
+    "unit": types.CompletionItemKind.Unit,
+    "value": types.CompletionItemKind.Value,
+    "file": types.CompletionItemKind.File,
+    "folder": types.CompletionItemKind.Folder,
+    "code": types.CompletionItemKind.EnumMember,
+}
+_SYMBOL_KINDS = {
+    "spec": types.SymbolKind.Module,
+    "use": types.SymbolKind.File,
+    "signal": types.SymbolKind.Variable,
+    "param": types.SymbolKind.Constant,
+    "let": types.SymbolKind.Field,
+    "template": types.SymbolKind.Function,
+    "hard": types.SymbolKind.Property,
+    "soft": types.SymbolKind.Property,
+    "expect": types.SymbolKind.Event,
+}
 _NOWHERE = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
@@ -66,4 +94,60 @@ def shown(space: Workspace, found: Diagnostic, *, related: bool) -> types.Diagno
         ]
         if related and found.labels
         else None,
+    )
+
+
+def item(space: Workspace, source: SourceText, found: Item) -> types.CompletionItem:
+    """Return what may be written at the cursor."""
+    return types.CompletionItem(
+        label=found.text,
+        kind=_ITEM_KINDS[found.kind],
+        detail=found.detail or None,
+        documentation=found.doc or None,
+        sort_text=f"{found.order}{found.text}",
+        filter_text=found.text,
+        text_edit=types.TextEdit(span_range(space.location(source, found.span)), found.text),
+    )
+
+
+def symbol(space: Workspace, source: SourceText, found: Symbol) -> types.DocumentSymbol:
+    """Return a statement for the list of an editor."""
+    return types.DocumentSymbol(
+        name=found.name,
+        kind=_SYMBOL_KINDS[found.kind],
+        range=span_range(space.location(source, found.span)),
+        selection_range=span_range(space.location(source, found.name_span)),
+        detail=found.detail or None,
+    )
+
+
+def symbol_information(uri: str, found: types.DocumentSymbol) -> types.SymbolInformation:
+    """Return a statement in the older form, for an editor that knows no other."""
+    return types.SymbolInformation(types.Location(uri, found.range), found.name, found.kind)
+
+
+def workspace_edit(
+    space: Workspace, changes: Iterable[tuple[SourceText, Iterable[Edit]]], *, versioned: bool
+) -> types.WorkspaceEdit:
+    """Return edits of several texts; with the versions that they are of, if the editor checks these."""
+    made = {space.uri(source.name): text_edits(space, source, edits) for source, edits in changes}
+    if not versioned:
+        return types.WorkspaceEdit(changes=made)
+    versions = {document.uri: document.version for document in space.documents}
+    return types.WorkspaceEdit(
+        document_changes=[
+            types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri, versions.get(uri)), list(edits))
+            for uri, edits in made.items()
+        ]
+    )
+
+
+def action(space: Workspace, found: Action, *, versioned: bool, related: bool) -> types.CodeAction:
+    """Return a way out of a diagnostic."""
+    return types.CodeAction(
+        title=found.title,
+        kind=types.CodeActionKind.QuickFix,
+        diagnostics=[shown(space, found.found, related=related)],
+        is_preferred=found.likely or None,
+        edit=workspace_edit(space, [(found.source, found.edits)], versioned=versioned),
     )

@@ -1,14 +1,13 @@
 """The words around a place, whether or not the statement there can be parsed.
 
-In: a text and an offset. Out: the tokens of the statement around it, or of its part before it. Only that statement is
-lexed: the text is cut at lines that begin as a statement does.
+In: a text and an offset. Out: the tokens of the statement around it, or of its part before it and what fits behind
+them. Only that statement is lexed: the text is cut at lines that begin as a statement does.
 """
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from stlspec.lang.parse import tokens_of
+from stlspec.lang.parse import following, tokens_of
 from stlspec.lang.statements import STATEMENT_WORDS
 from stlspec.lang.tree import span_of
 from stlspec.source import SourceText, Span
@@ -31,6 +30,20 @@ class Token:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """What is being typed.
+
+    word: the word that ends at the cursor, as far as it goes; span: where. tokens: those of its statement before it.
+    fits: the terminals that may stand behind them; none if they are broken already.
+    """
+
+    word: str
+    span: Span
+    tokens: tuple[Token, ...]
+    fits: frozenset[str]
+
+
 def statement_at(text: str, offset: int) -> Span:
     """Return the stretch from the last line that begins a statement, up to the next one."""
     start, end = 0, len(text)
@@ -45,11 +58,7 @@ def statement_at(text: str, offset: int) -> Span:
 def tokens_in(source: SourceText, span: Span) -> tuple[Token, ...]:
     """Return the tokens of a stretch of a text, comments left out."""
     found = tokens_of(SourceText(source.name, source.slice(span)))
-    spans = [span_of(token) for token in found]
-    return tuple(
-        Token(token.type, str(token), Span(at.start + span.start, at.end + span.start))
-        for token, at in zip(found, spans, strict=True)
-    )
+    return tuple(Token(token.type, str(token), _moved(span_of(token), span.start)) for token in found)
 
 
 def token_at(source: SourceText, offset: int) -> Token | None:
@@ -59,9 +68,15 @@ def token_at(source: SourceText, offset: int) -> Token | None:
     return touching[-1] if touching else None
 
 
-def before(source: SourceText, offset: int) -> tuple[str, Sequence[Token]]:
-    """Return the word that is being typed at an offset, and the tokens before it in its statement."""
+def typed(source: SourceText, offset: int, names: frozenset[str]) -> Typed:
+    """Return what is being typed at an offset. names: what the text and the files that it uses declare."""
     start = statement_at(source.text, offset).start
     match = _WORD_BEFORE.search(source.text, start, offset)
     word = match[0] if match else ""
-    return word, tokens_in(source, Span(start, offset - len(word)))
+    found = tokens_of(SourceText(source.name, source.text[start : offset - len(word)]))
+    tokens = tuple(Token(token.type, str(token), _moved(span_of(token), start)) for token in found)
+    return Typed(word, Span(offset - len(word), offset), tokens, following(found, names))
+
+
+def _moved(span: Span, by: int) -> Span:
+    return Span(span.start + by, span.end + by)

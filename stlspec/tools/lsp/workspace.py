@@ -4,7 +4,9 @@ In: buffers that open, change and close. Out: for each its syntax, its model and
 when first asked for and kept until one of the files that it rests on changes; and what is to be shown in which file.
 """
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,6 +20,7 @@ from stlspec.lang.parse import Syntax, parse
 from stlspec.lang.using import Parser, identity, parse_with_uses
 from stlspec.source import SourceText, Span
 from stlspec.tools.lsp.documents import Change, Document, uri_of
+from stlspec.tools.lsp.folders import specs_under
 from stlspec.tools.lsp.positions import DEFAULT, Encoding, Lines, Place
 
 
@@ -58,6 +61,8 @@ class Workspace:
         self._documents: dict[str, Document] = {}
         self._reviewed: dict[str, Reviewed] = {}
         self._lines: dict[str, Lines] = {}
+        self.folders: tuple[str, ...] = ()
+        """Where the editor works: specs there count, too, where a name is sought."""
 
     @property
     def documents(self) -> tuple[Document, ...]:
@@ -115,24 +120,49 @@ class Workspace:
             return Reviewed(document, (document.refusal,) if document.refusal else ())
         selection, problems = _settings(document)
         rests_on: set[str] = set()
-        load = partial(self._load, rests_on) if document.is_file else None
+        load = partial(self._load, rests_on, {}) if document.is_file else None
         syntax = parse_with_uses(document.source, load, self._parse)
         review = review_syntax(syntax, None, selection)
         found = (*problems, *review.diagnostics)
         return Reviewed(document, found, syntax, review.result.model, frozenset(rests_on))
 
-    def parsed(self, path: str) -> Syntax:
-        """Parse a file and what it uses, open ones as they stand in the editor.
+    def roots(self, beside: str) -> Iterator[Syntax]:
+        """Yield every spec that may say something about a name: the open ones, and those of the folders.
 
-        Raises: InputError: it cannot be read.
+        beside: a file in whose folder specs are sought if the editor works in no folder.
+        Raises: InputError: the folders hold too many files.
         """
-        load = partial(self._load, set[str]())
-        return parse_with_uses(load(path), load, self._parse)
+        seen = set()
+        for document in self.documents:
+            known = self.reviewed(document.uri)
+            seen.add(identity(document.name))
+            if known is not None and known.syntax is not None:
+                yield known.syntax
+        folders = self.folders or (os.path.dirname(beside),)  # noqa: PTH120 - a name, which need not be there
+        for path in specs_under(folders, deep=bool(self.folders)):
+            if identity(path) not in seen:
+                with suppress(InputError):  # what cannot be read says nothing
+                    yield self.parsed(path, {})
 
-    def _load(self, asked: set[str], path: str) -> SourceText:
+    def parsed(self, name: str, instead: Mapping[str, str]) -> Syntax:
+        """Parse a file or an open buffer and what it uses, open ones as they stand in the editor.
+
+        Args:    instead: texts that count in place of those of files, by the identity of the file.
+        Raises:  InputError: it cannot be read.
+        """
+        load = partial(self._load, set[str](), instead)
+        document = self._documents.get(name)
+        if document is None or document.is_file:
+            return parse_with_uses(load(name), load)
+        text = document.source.text if document.source is not None else ""
+        return parse_with_uses(SourceText(name, instead.get(identity(name), text)), None)
+
+    def _load(self, asked: set[str], instead: Mapping[str, str], path: str) -> SourceText:
         """Return the text of a file: of its buffer if it is open."""
         key = identity(path)
         asked.add(key)
+        if key in instead:
+            return SourceText(path, instead[key])
         document = self._open_at(key)
         if document is None:
             return files.read_used(path)

@@ -3,12 +3,16 @@
 It is strict: whatever the server writes that is no message of the protocol fails the test.
 """
 
+import io
 import json
+import os
 import queue
 import re
 import subprocess
 import sys
 import threading
+
+from stlspec.tools.lsp.session import serve
 
 PATIENCE = 20
 
@@ -21,37 +25,68 @@ class RefusedError(Exception):
         self.code = error["code"]
 
 
+def outside():
+    """A server in a process of its own, as editors have it."""
+    pipe = subprocess.PIPE
+    return subprocess.Popen([sys.executable, "-m", "stlspec", "lsp"], stdin=pipe, stdout=pipe, stderr=pipe)
+
+
+class Inside:
+    """A server in a thread."""
+
+    def __init__(self):
+        source, to_server = os.pipe()
+        from_server, sink = os.pipe()
+        self.stdin, self.stdout, self.stderr = os.fdopen(to_server, "wb"), os.fdopen(from_server, "rb"), io.BytesIO()
+        self.code = None
+
+        def run():
+            with os.fdopen(sink, "wb") as out:
+                self.code = serve(lambda most: os.read(source, most), lambda data: (out.write(data), out.flush()))
+            os.close(source)
+
+        self.thread = threading.Thread(target=run, daemon=True)
+        self.thread.start()
+
+    def wait(self, patience):
+        self.thread.join(patience)
+        return self.code
+
+
 class Client:
     """One sitting. Documents are kept as the editor has them: `texts`, `versions`."""
 
-    def __init__(self, *, encodings=None, start=True, folders=None, watches=False):
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "stlspec", "lsp"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-        )
+    def __init__(self, *, encodings=None, start=True, folders=None, modern=True, inside=False):
+        """inside: the server runs in a thread of this process, which starts sooner."""
+        server = Inside() if inside else outside()
+        self.stdin, self.stdout, self.stderr, self.wait = server.stdin, server.stdout, server.stderr, server.wait
         self.messages = queue.Queue()
         self.shown = {}
         self.texts, self.versions = {}, {}
         self.asked = []
         self.last = 0
         self.log = []
-        listening = (self._listen, lambda: self.log.extend(self.process.stderr))
+        listening = (self._listen, lambda: self.log.extend(self.stderr))
         self.threads = [threading.Thread(target=target, daemon=True) for target in listening]
         for thread in self.threads:
             thread.start()
         if start:
             general = {"positionEncodings": encodings} if encodings is not None else {}
-            text = {"publishDiagnostics": {"relatedInformation": True}}
-            dynamic = {"didChangeWatchedFiles": {"dynamicRegistration": watches}}
-            capabilities = {"general": general, "textDocument": text, "workspace": dynamic}
+            text = {
+                "publishDiagnostics": {"relatedInformation": True},
+                "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
+            }
+            space = {
+                "didChangeWatchedFiles": {"dynamicRegistration": True},
+                "workspaceEdit": {"documentChanges": True},
+            }
+            capabilities = {"general": general, "textDocument": text, "workspace": space} if modern else {}
             params = {"processId": None, "rootUri": None, "capabilities": capabilities, "workspaceFolders": folders}
             self.capabilities = self.request("initialize", params)["capabilities"]
             self.notify("initialized", {})
 
     def _listen(self):
-        stream = self.process.stdout
+        stream = self.stdout
         try:
             while header := stream.readline():
                 length = re.fullmatch(rb"Content-Length: (\d+)\r\n", header)
@@ -68,8 +103,8 @@ class Client:
         self.raw(b"Content-Length: %d\r\n\r\n%b" % (len(body), body))
 
     def raw(self, data):
-        self.process.stdin.write(data)
-        self.process.stdin.flush()
+        self.stdin.write(data)
+        self.stdin.flush()
 
     def notify(self, method, params):
         self.send({"method": method, "params": params})
@@ -141,10 +176,10 @@ class Client:
         return self.ended()
 
     def ended(self):
-        code = self.process.wait(PATIENCE)
+        code = self.wait(PATIENCE)
         for thread in self.threads:
             thread.join(PATIENCE)
-        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+        for stream in (self.stdin, self.stdout, self.stderr):
             stream.close()
         while (message := self.messages.get(timeout=PATIENCE)) is not None:
             assert not isinstance(message, Exception), message
@@ -158,3 +193,17 @@ def place(at):
 def shape(diagnostics):
     """The codes and first lines of diagnostics."""
     return [(d["code"], d["range"]["start"]["line"]) for d in diagnostics]
+
+
+def applied(text, edits):
+    """Make the edits of the protocol in a text; columns are in UTF-16."""
+    lines = re.split(r"(?<=\n)", text)
+
+    def offset(at):
+        line = lines[at["line"]].encode("utf-16-le")
+        return sum(map(len, lines[: at["line"]])) + len(line[: 2 * at["character"]].decode("utf-16-le"))
+
+    for edit in sorted(edits, key=lambda e: -offset(e["range"]["start"])):
+        start, end = (offset(edit["range"][side]) for side in ("start", "end"))
+        text = text[:start] + edit["newText"] + text[end:]
+    return text

@@ -3,7 +3,7 @@
 import pytest
 
 from stlspec.source import SourceText
-from stlspec.tools.lsp.cursor import before, statement_at, token_at
+from stlspec.tools.lsp.cursor import statement_at, token_at, typed
 
 TEXT = """# first
 signal time
@@ -44,15 +44,15 @@ def test_the_token_at_a_place_has_its_place_in_the_whole_text():
 
 def test_what_is_typed_is_parted_from_what_stands_before_it():
     source = SourceText.of("a.stl", TEXT)
-    word, tokens = before(source, at("always") + 3)
-    assert word == "alw"
-    assert [token.text for token in tokens] == ["hard", "a", ":"]
-    word, tokens = before(source, at("always"))
-    assert word == ""
+    found = typed(source, at("always") + 3, frozenset())
+    assert (found.word, source.slice(found.span)) == ("alw", "alw")
+    assert [source.slice(token.span) for token in found.tokens] == ["hard", "a", ":"]
+    assert {"NAME", "ALWAYS", "NOT"} <= found.fits
+    assert typed(source, at("always"), frozenset()).word == ""
 
 
 def test_a_quoted_text_that_is_open_is_a_token():
-    source = SourceText.of("a.stl", 'use "da')
-    word, tokens = before(source, 7)
-    assert word == "da"
-    assert [token.kind for token in tokens] == ["USE", "BAD_STRING"]
+    found = typed(SourceText.of("a.stl", 'use "da'), 7, frozenset())
+    assert found.word == "da"
+    assert [token.kind for token in found.tokens] == ["USE", "BAD_STRING"]
+    assert found.fits == frozenset()

@@ -6,7 +6,7 @@ import pytest
 
 from stlspec.errors import Fix
 from stlspec.lang.formatting.text import format_text
-from stlspec.tools.lsp.edits import formatting
+from stlspec.tools.lsp.edits import actions, formatting
 from stlspec.tools.lsp.workspace import Workspace
 from tests.lang.compose import Composer
 
@@ -51,3 +51,48 @@ def test_random_specs_are_brought_into_canonical_form():
     for _ in range(20):
         text = Composer(rng).text()
         assert formatted(text) == format_text(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "after"),
+    [
+        ("signal x\nhard a: always[5, 2] (x > 0)\n", "signal x\nhard a: always[2, 5] (x > 0)\n"),
+        ("signal x\nhard a: always (x = 0)\n", "signal x\nhard a: always (x == 0)\n"),
+        ("signal x\nhard a: always (x > 0\nhard b: x > 1\n", "signal x\nhard a: always (x > 0)\nhard b: x > 1\n"),
+        ("signal goal\nhard a: always (gaol > 0)\n", "signal goal\nhard a: always (goal > 0)\n"),
+    ],
+)
+def test_the_likeliest_way_out_mends_the_text(text, after):
+    known = reviewed(text)
+    found = next(action for action in actions(known, 0, len(text)) if action.likely)
+    assert Fix("", found.edits).applied(text) == after
+    assert found.title == found.found.help
+
+
+def test_only_what_is_reported_on_the_lines_asked_for_is_offered():
+    text = "signal x\nsignal y\nhard a: always[5, 2] (x > 0)\n"
+    assert actions(reviewed(text), 0, text.index("hard") - 1) == ()
+    at = text.index("x > 0")
+    assert [action.found.code for action in actions(reviewed(text), at, at)] == ["I401"]
+
+
+@pytest.mark.parametrize(
+    ("line", "after"),
+    [
+        ("signal y", "signal y  # stlspec: ignore L615"),
+        ("signal y in [0, 1] \t", "signal y in [0, 1]  # stlspec: ignore L615 \t"),
+        ("signal y  # stlspec: ignore l603", "signal y  # stlspec: ignore L615, l603"),
+    ],
+)
+def test_a_warning_can_be_ignored_on_its_line(line, after):
+    text = f"signal x\r\n{line}\r\nhard a: always (x > 0)\r\n"
+    known = reviewed(text)
+    found = next(a for a in actions(known, text.index(line), text.index(line)) if a.title.startswith("Ignore L615"))
+    mended = Fix("", found.edits).applied(text)
+    assert mended == text.replace(line, after)
+    assert "L615" not in [d.code for d in reviewed(mended).diagnostics]
+
+
+def test_a_line_with_a_remark_of_its_own_and_an_error_are_not_ignored():
+    text = "signal x\nsignal y  # for later\nhard a: always (z > 0)\n"
+    assert [a.title for a in actions(reviewed(text), 0, len(text)) if a.title.startswith("Ignore")] == []

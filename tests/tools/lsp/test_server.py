@@ -1,8 +1,12 @@
 """An editor drives the server over its standard streams, through every feature."""
 
+import json
+import random
+
 import pytest
 
-from tests.tools.lsp.client import Client, shape
+from tests.lang.mutate import SPECS, mutate, statements
+from tests.tools.lsp.client import Client, RefusedError, applied, shape
 
 TEXT = """signal d_obs unit "m" in [0, 50] "Distance"
 signal d_goal unit "m" in [0, 50]
@@ -73,6 +77,58 @@ def test_formatting(client, uri):
     )
 
 
+def test_completion(client, uri):
+    client.change(uri, ((4, 0), (4, 0), "hard near: always d_"))
+    items = {i["label"]: i for i in client.at("completion", uri, 4, 20)}
+    assert {"d_obs", "d_goal", "always", "abs"} <= items.keys()
+    assert items["d_obs"]["textEdit"] == {"newText": "d_obs", "range": span(4, 18, 4, 20)}
+    assert items["d_obs"]["documentation"] == "Distance"
+
+
+def test_references(client, uri):
+    context = {"context": {"includeDeclaration": True}}
+    found = client.at("references", uri, 3, 25, **context)
+    assert [f["range"] for f in found] == [span(2, 5, 2, 10), span(3, 22, 3, 27)]
+    context = {"context": {"includeDeclaration": False}}
+    assert client.at("references", uri, 3, 25, **context) == found[1:]
+
+
+def test_rename(client, uri):
+    assert client.at("prepareRename", uri, 2, 30) == span(2, 28, 2, 33)
+    assert client.at("prepareRename", uri, 2, 0) is None
+    (change,) = client.at("rename", uri, 2, 30, newName="clearance")["documentChanges"]
+    assert change["textDocument"] == {"uri": uri, "version": 1}
+    assert applied(TEXT, change["edits"]) == TEXT.replace("d_obs", "clearance")
+    with pytest.raises(RefusedError, match="a word of the language") as caught:
+        client.at("rename", uri, 2, 30, newName="always")
+    assert caught.value.code == -32803
+
+
+def test_a_fix_is_a_code_action_and_mends_the_text(client, uri):
+    client.change(uri, ((3, 39), (3, 45), "[8, 0]"))
+    (found,) = client.diagnostics(uri)
+    assert found["code"] == "I401"
+    everywhere = {"range": span(0, 0, 9, 0), "context": {"diagnostics": [found]}, "textDocument": {"uri": uri}}
+    (action,) = client.request("textDocument/codeAction", everywhere)
+    assert (action["kind"], action["isPreferred"], action["diagnostics"]) == ("quickfix", True, [found])
+    (change,) = action["edit"]["documentChanges"]
+    mended = applied(TEXT.replace("[0, 8]", "[8, 0]"), change["edits"])
+    assert mended == TEXT
+    client.change(uri, mended)
+    assert client.diagnostics(uri) == []
+    assert (
+        client.request("textDocument/codeAction", everywhere | {"context": {"diagnostics": [], "only": ["source"]}})
+        == []
+    )
+
+
+def test_symbols(client, uri):
+    found = client.request("textDocument/documentSymbol", {"textDocument": {"uri": uri}})
+    assert [s["name"] for s in found] == ["d_obs", "d_goal", "avoid", "reach"]
+    assert found[0]["detail"] == "signal: Distance"
+    assert found[2]["selectionRange"] == span(2, 5, 2, 10)
+
+
 def test_used_files_are_reached_open_or_closed(client, tmp_path):
     main, signals = ((tmp_path / name).as_uri() for name in ("main.stl", "signals.stl"))
     (tmp_path / "signals.stl").write_text("signal d\n")
@@ -102,8 +158,99 @@ def test_a_file_that_changes_on_disk_is_read_again(client, tmp_path):
 def test_a_request_about_what_is_not_open_has_no_result(client):
     assert client.at("hover", "file:///not/open.stl", 0, 0) is None
     assert client.at("definition", "file:///not/open.stl", 0, 0) is None
+    assert client.at("completion", "file:///not/open.stl", 0, 0) == []
+    assert client.at("references", "file:///not/open.stl", 0, 0, context={"includeDeclaration": True}) == []
+    assert client.at("prepareRename", "file:///not/open.stl", 0, 0) is None
+    assert client.at("rename", "file:///not/open.stl", 0, 0, newName="x") is None
     params = {"textDocument": {"uri": "file:///not/open.stl"}, "options": OPTIONS}
     assert client.request("textDocument/formatting", params) is None
+    assert client.request("textDocument/documentSymbol", params) == []
+    assert (
+        client.request("textDocument/codeAction", params | {"range": span(0, 0, 0, 0), "context": {"diagnostics": []}})
+        == []
+    )
+
+
+def test_the_editor_is_asked_to_watch_specs_and_settings(client):
+    (asked,) = [m for m in client.asked if m["method"] == "client/registerCapability"]
+    (registered,) = asked["params"]["registrations"]
+    assert [w["globPattern"] for w in registered["registerOptions"]["watchers"]] == [
+        *("**/*.stl", "**/*.stlspec", "**/pyproject.toml"),
+    ]
+
+
+def test_an_editor_that_can_do_little_gets_the_older_forms(tmp_path):
+    client = Client(modern=False, inside=True)
+    uri = (tmp_path / "a.stl").as_uri()
+    client.open(uri, TEXT)
+    assert "relatedInformation" not in (client.diagnostics(uri) or [{}])[0]
+    found = client.request("textDocument/documentSymbol", {"textDocument": {"uri": uri}})
+    assert found[0]["location"]["uri"] == uri
+    edit = client.at("rename", uri, 2, 30, newName="clearance")
+    assert applied(TEXT, edit["changes"][uri]) == TEXT.replace("d_obs", "clearance")
+    assert client.asked == []
+    assert client.stop() == 0
+
+
+@pytest.mark.parametrize(
+    ("encodings", "column"), [(None, 21), (["utf-8", "utf-16"], 23), (["utf-32"], 20), (["x"], 21)]
+)
+def test_columns_are_counted_as_agreed(tmp_path, encodings, column):
+    client = Client(encodings=encodings, inside=True)
+    assert client.capabilities["positionEncoding"] == (encodings or ["utf-16"])[0].replace("x", "utf-16")
+    uri = (tmp_path / "a.stl").as_uri()
+    client.open(uri, 'signal x\nhard a "😀": always (y > 0)\n')
+    (found,) = [d for d in client.diagnostics(uri) if d["code"] == "N101"]
+    start = found["range"]["start"]
+    assert start == {"line": 1, "character": column}
+    client.change(uri, ((1, column), (1, column + 1), "x"))
+    assert client.diagnostics(uri) == []
+    assert client.stop() == 0
+
+
+def test_renaming_reaches_files_of_the_folder_that_are_not_open(tmp_path):
+    (tmp_path / "specs").mkdir()
+    (tmp_path / "signals.stl").write_text("signal d\n")
+    (tmp_path / "specs/other.stl").write_text('use "../signals.stl"\nhard a: always (d > 2)\n')
+    client = Client(folders=[{"uri": tmp_path.as_uri(), "name": "here"}], inside=True)
+    uri = (tmp_path / "main.stl").as_uri()
+    client.open(uri, MAIN)
+    made = client.at("rename", uri, 1, 20, newName="gap")["documentChanges"]
+    assert {(m["textDocument"]["uri"].rsplit("/", 1)[1], m["textDocument"].get("version")) for m in made} == {
+        *(("main.stl", 1), ("signals.stl", None), ("other.stl", None)),
+    }
+    assert client.stop() == 0
+
+
+def test_fifty_random_edits_end_where_a_fresh_start_does(client, tmp_path):
+    rng = random.Random(50)
+    uri, fresh = ((tmp_path / name).as_uri() for name in ("a.stl", "b.stl"))
+    text = rng.choice(SPECS)
+    client.open(uri, text)
+    for _ in range(50):
+        parts = statements(text)
+        k = rng.randrange(len(parts))
+        after = (
+            "\n".join([*parts[:k], mutate(rng, parts[k]), *parts[k + 1 :]]) if rng.random() < 0.6 else rng.choice(SPECS)
+        )
+        start = shared(text, after)
+        tail = shared(text[start:][::-1], after[start:][::-1])
+        end = len(text) - tail
+        places = [(text.count("\n", 0, i), i - text.rfind("\n", 0, i) - 1) for i in (start, end)]
+        client.change(uri, (*places, after[start : len(after) - tail]))
+        text = after
+    client.open(fresh, text)
+    shown = [json.dumps(client.diagnostics(one)).replace(one, "here") for one in (uri, fresh)]
+    assert shown[0] == shown[1]
+    found = [client.request("textDocument/documentSymbol", {"textDocument": {"uri": u}}) for u in (uri, fresh)]
+    assert found[0] == found[1]
+    for one in (uri, fresh):
+        client.close(one)
+
+
+def shared(one, other):
+    """How many characters two texts share from their beginning."""
+    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 
 
 OPTIONS = {"tabSize": 4, "insertSpaces": True}
