@@ -1,23 +1,22 @@
 """The reading `every`: the exact value at each sample, in order, and enclosures of the others on demand.
 
-In: a compiled spec. Out: a program whose function returns what a sample made known. The operators of `late` are
-joined to a network along the DAG; shared sub-formulas are shared there too. Beside it a tape keeps the settled
-values of the samples that are still open, from which their enclosures are computed when somebody asks.
+In: a compiled spec. Out: a program whose function returns what a sample made known. Where samples are counted its
+operators are lines of that function (`flow`). Elsewhere gaps leave open how late a value is: there the operators of
+`late` are joined to a network along the DAG. Beside it a tape keeps the settled values of the samples that are
+still open, from which their enclosures are computed when somebody asks (`opening`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ir import Node
 from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
-from stlspec.semantics.online.arrays import enclosures, needed, stretch, three
-from stlspec.semantics.online.front import Lines
+from stlspec.semantics.online.arrays import needed
+from stlspec.semantics.online.flow import Flow
+from stlspec.semantics.online.front import Front, Lines
 from stlspec.semantics.online.late import (
     Late,
     LateBoolean,
@@ -30,15 +29,13 @@ from stlspec.semantics.online.late import (
     LateWindow,
     Sink,
 )
+from stlspec.semantics.online.opening import Opening, deferred
 from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import DEEPEST, Plan
 from stlspec.semantics.online.program import Program, compiled, make_front
-from stlspec.semantics.online.saving import Remembering, State, Unsound, items, whole
+from stlspec.semantics.online.saving import Remembering, State, items, whole
 from stlspec.semantics.online.states import States
-from stlspec.semantics.online.tape import Tape, reach_back
 from stlspec.semantics.robustness import TIE
-
-Floats = NDArray[np.float64]
 
 
 class Known(NamedTuple):
@@ -51,45 +48,25 @@ class Known(NamedTuple):
     verdict: Verdict
 
 
-class Network(Remembering):
-    """All that the reading `every` remembers beside settled formulas.
+class Network(Opening):
+    """All that the reading `every` remembers beside settled formulas, where samples may come at any time.
 
-    tape: settled values, and as its first column time stamps as given. counts: for each requirement the number
-    of samples at which it is known.
+    counts: for each requirement the number of samples at which it is known.
     """
 
-    __slots__ = (
-        "_bundle",
-        "_inputs",
-        "_late",
-        "_others",
-        "_plan",
-        "_reach",
-        "_timed",
-        "counts",
-        "found",
-        "sinks",
-        "tape",
-    )
+    __slots__ = ("_late", "counts", "found", "sinks")
     STATE: ClassVar[State] = {"counts": lambda value: [whole(x) for x in items(value)]}
 
     def __init__(self, bundle: BundleData, plan: Plan) -> None:
-        self._bundle, self._plan = bundle, plan
-        roots = [r.root for r in bundle.requirements]
-        self._inputs, self._others = needed(plan, roots)
-        reach = reach_back(plan, self._others, roots)
-        self._reach = None if deferred(bundle, plan) else reach
-        self.counts = [0] * len(roots)
-        self._timed = plan.base.kind != "step"
-        self.tape = Tape(len(self._inputs) + self._timed)
+        super().__init__(bundle, plan)
+        self.counts = [0] * len(bundle.requirements)
         self.found: list[Known] = []
         self._late: dict[int, Late] = {}
         self.sinks = self._connect()
 
-    @property
-    def inputs(self) -> tuple[int, ...]:
-        """The settled formulas that are kept."""
-        return self._inputs
+    def first_open(self, _: int) -> list[int]:
+        """Return for each requirement the first sample at which it is not known."""
+        return self.counts
 
     def _connect(self) -> dict[int, list[Sink]]:
         """Join the operators; return what takes the values of each settled formula."""
@@ -110,14 +87,13 @@ class Network(Remembering):
 
     def _outlet(self, requirement: int) -> Sink:
         name, counts = self._bundle.requirements[requirement].name, self.counts
-        per_unit = self._plan.base.ticks_per_unit
-        new, tell, timed = tuple.__new__, self.found.append, self._timed
+        new, tell = tuple.__new__, self.found.append
         satisfied, violated = Verdict.SATISFIED, Verdict.VIOLATED
 
-        def take(time: int, value: float, _: int) -> None:
+        def take(_: int, value: float, __: int) -> None:
             sample = counts[requirement]
             counts[requirement] = sample + 1
-            stamp = self._stamp(sample) if timed else time / per_unit
+            stamp = self._stamp(sample)
             # Ties are shown as 0.
             if value > TIE:
                 tell(new(Known, (sample, stamp, name, value, satisfied)))
@@ -132,30 +108,9 @@ class Network(Remembering):
         stamps = self.tape.columns[-1]
         return stamps[min(sample - self.tape.base, len(stamps) - 1)]
 
-    def trim(self) -> None:
-        """Forget what no open sample looks at."""
-        self.tape.drop(min(self.counts), self._reach)
-
-    def open_samples(self, n: int) -> list[tuple[int, Floats]]:
-        """Return for each requirement its first open sample, and columns low, high, current from there on."""
-        base = self.tape.needed(min(*self.counts, n - 1), self._reach)
-        times, columns = self.tape.arrays(base)
-        found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[: len(self._inputs)])
-        result = []
-        for requirement, first in zip(self._bundle.requirements, self.counts, strict=True):
-            values = three(found[requirement.root][first - base :]) if first < n else np.empty((0, 3))
-            result.append((first, values))
-        return result
-
-    def stamps(self, first: int) -> Floats:
-        """Return the times of the samples from number `first` on, (n_samples,)."""
-        if not self._timed:
-            return np.arange(first, self.tape.base + len(self.tape.times), dtype=np.float64)
-        return np.frombuffer(self.tape.columns[-1], dtype=np.float64)[first - self.tape.base :].copy()
-
     def parts(self) -> list[Remembering]:
         """Return the objects that it consists of."""
-        return [self.tape, *self._late.values()]
+        return [*super().parts(), *self._late.values()]
 
     def load(self, state: Any) -> None:
         """Take over a saved state."""
@@ -163,13 +118,6 @@ class Network(Remembering):
         super().load(state)
         # The outlets hold on to this very list.
         held[:], self.counts = self.counts, held
-
-    def check(self, n: int, newest: int) -> None:
-        """Check what values together must obey."""
-        super().check(n, newest)
-        fits = self.tape.base + len(self.tape.times) == n and len(self.counts) == len(self._bundle.requirements)
-        if not fits or not all(self.tape.base <= count <= n for count in self.counts):
-            raise Unsound("the tape does not fit")
 
 
 def _operator(node: Node) -> Late:
@@ -189,34 +137,38 @@ def _operator(node: Node) -> Late:
     return LateUntil(low, high) if op == "until" else LateWindow(low, high, op == "eventually")
 
 
-def deferred(bundle: BundleData, plan: Plan) -> tuple[str, ...]:
-    """Return the names of the requirements whose values are known at the end only: they look ahead without end.
+class Counted(Opening):
+    """The same where samples are counted: a requirement is known as late as its horizon."""
 
-    Not in the paper: it evaluates complete traces only.
-    """
-    ahead = horizons(plan.nodes, plan.base)
-    return tuple(r.name for r in bundle.requirements if ahead[r.root] is None)
+    __slots__ = ("_late",)
+
+    def __init__(self, bundle: BundleData, plan: Plan) -> None:
+        super().__init__(bundle, plan)
+        ahead = horizons(plan.nodes, plan.base)
+        self._late = [0 if plan.settled[r.root] else ahead[r.root] for r in bundle.requirements]
+
+    def first_open(self, n: int) -> list[int]:
+        """Return for each requirement the first of n samples at which it is not known."""
+        return [0 if late is None else max(0, n - late) for late in self._late]
 
 
 def every_program(bundle: BundleData, plan: Plan, states: States | None = None) -> Program:
     """Write the program of the reading `every`."""
     lines = Lines()
+    front = make_front(plan, bundle, states, lines)
+    if plan.counted:
+        return _counted_program(bundle, plan, front)
     for requirement in bundle.requirements:
         if plan.depths[requirement.root] > DEEPEST:
             what = f"the reading `every` of '{requirement.name}', whose operators look ahead {DEEPEST} deep and more"
             raise UsageError([diagnostic("D880", what=what, help="use the reading `start`")])
-    front = make_front(plan, bundle, states, lines)
     model = Network(bundle, plan)
     part = lines.keep(lambda: Network(bundle, plan))
-    stamps = [] if plan.counted else ["clock.shown(T) if time is None else clock.stamp"]
-    for slot, name in enumerate([*(front.value(i) for i in model.inputs), *stamps]):
-        lines.add(f"{lines.call(part, _appender(slot))}({name})")
     lines.add(f"{lines.call(part, lambda network: network.tape.times.append)}(T)")
+    _keep(front, part, model.inputs, ["clock.shown(T) if time is None else clock.stamp"])
     for index, sinks in model.sinks.items():
         for slot in range(len(sinks)):
             lines.add(f"{lines.call(part, _inlet(index, slot))}(T, {front.value(index)}, T)")
-    lines.add("if not n & 255:")
-    lines.add(f"    {lines.call(part, lambda network: network.trim)}()")
     found = lines.call(part, lambda network: network.found)
     lines.add(f"known = {found}[:]")
     lines.add(f"{found}.clear()")
@@ -224,8 +176,39 @@ def every_program(bundle: BundleData, plan: Plan, states: States | None = None) 
     return compiled(plan, lines, part)
 
 
-def _appender(slot: int) -> Callable[[Network], Callable[[float], None]]:
-    return lambda network: network.tape.columns[slot].append
+def _counted_program(bundle: BundleData, plan: Plan, front: Front) -> Program:
+    lines, late = front.lines, set(deferred(bundle, plan))
+    part = lines.keep(lambda: Counted(bundle, plan))
+    _keep(front, part, Counted(bundle, plan).inputs, [])
+    bounded = [r for r in bundle.requirements if r.name not in late]
+    roots = [r.root for r in bounded]
+    names = {"KNOWN": Known, "new": tuple.__new__, "SAT": Verdict.SATISFIED, "VIO": Verdict.VIOLATED}
+    lines.bound |= names
+    name_of = [lines.bind(r.name) for r in bounded]
+    per_unit = lines.bind(plan.base.ticks_per_unit)
+
+    def tell(i: int, horizon: int, value: str) -> str:
+        sample = f"n - {lines.bind(horizon)}" if horizon else "n"
+        # Ties are shown as 0.
+        shown = f"{value} if {value} > TIE or {value} < NTIE else 0.0"
+        verdict = f"SAT if {value} > 0 else VIO"
+        return f"new(KNOWN, (j := {sample}, j / {per_unit}, {name_of[i]}, {shown}, {verdict}))"
+
+    Flow(plan, front).write(needed(plan, roots)[1], roots, tell)
+    return compiled(plan, lines, part)
+
+
+def _keep(front: Front, part: int, inputs: Sequence[int], more: Sequence[str]) -> None:
+    """Write what puts settled values on the tape."""
+    lines = front.lines
+    for slot, name in enumerate([*(front.value(i) for i in inputs), *more]):
+        lines.add(f"{lines.call(part, _appender(slot))}({name})")
+    lines.add("if not n & 255:")
+    lines.add(f"    {lines.call(part, lambda opening: opening.trim)}(n + 1)")
+
+
+def _appender(slot: int) -> Callable[[Opening], Callable[[float], None]]:
+    return lambda opening: opening.tape.columns[slot].append
 
 
 def _inlet(index: int, slot: int) -> Callable[[Network], Sink]:

@@ -16,7 +16,8 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.errors import Diagnostic, UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
-from stlspec.semantics.online.every import Known, Network, deferred, every_program
+from stlspec.semantics.online.every import Known, every_program
+from stlspec.semantics.online.opening import Opening, deferred
 from stlspec.semantics.online.plan import Ends, make_plan
 from stlspec.semantics.online.program import Objects, Program, shown, start_program
 from stlspec.semantics.online.samples import refuse
@@ -66,7 +67,7 @@ class Monitor:
     @property
     def reading(self) -> Reading:
         """What is followed: "start" or "every"."""
-        return "start" if self._program.network < 0 else "every"
+        return "start" if self._program.opening < 0 else "every"
 
     @property
     def ends(self) -> Ends:
@@ -113,9 +114,9 @@ class Monitor:
             rows = [np.array([row] if row[0] != row[1] else np.empty((0, 3))) for row in clock.ends()]
             begin = np.array([clock.begin])
             return {name: _open(0, begin[: len(row)], row) for name, row in zip(names, rows, strict=True)}
-        network = self._network()
-        found = network.open_samples(self.n_samples)
-        return {name: _open(at, network.stamps(at), rows) for name, (at, rows) in zip(names, found, strict=True)}
+        opening = self._opening()
+        found = opening.open_samples(self.n_samples)
+        return {name: _open(at, opening.stamps(at), rows) for name, (at, rows) in zip(names, found, strict=True)}
 
     def finish(self) -> Any:
         """Return what is worth what if the trace ends here; the monitor can go on all the same.
@@ -133,20 +134,20 @@ class Monitor:
         return {r.name: Final(shown(value), _verdict(value)) for r, (_, _, value) in rows}
 
     def _rest(self) -> list[Known]:
-        network = self._network()
+        opening = self._opening()
         found: list[Known] = []
         for requirement, (first, rows) in zip(
-            self._bundle.requirements, network.open_samples(self.n_samples), strict=True
+            self._bundle.requirements, opening.open_samples(self.n_samples), strict=True
         ):
             values = rows[:, 2].tolist()
-            for i, (time, value) in enumerate(zip(network.stamps(first).tolist(), values, strict=True)):
+            for i, (time, value) in enumerate(zip(opening.stamps(first).tolist(), values, strict=True)):
                 found.append(Known(first + i, time, requirement.name, shown(value), _verdict(value)))
         return found
 
-    def _network(self) -> Network:
-        network = self._objects.parts[self._program.network]
-        assert isinstance(network, Network)
-        return network
+    def _opening(self) -> Opening:
+        opening = self._objects.parts[self._program.opening]
+        assert isinstance(opening, Opening)
+        return opening
 
     def copy(self) -> "Monitor":
         """Return a monitor that has seen the same samples and goes its own way."""

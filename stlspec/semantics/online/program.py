@@ -61,7 +61,7 @@ class Objects:
 class Program:
     """What all copies of a monitor share.
 
-    network: which object is the network of the reading `every`, -1 with the reading `start`. ends: what was
+    opening: which object has the open samples of the reading `every`, -1 with the reading `start`. ends: what was
     promised of the end. states: what samples are numbers of, if they are.
     """
 
@@ -70,7 +70,7 @@ class Program:
     initial: tuple[float, ...]
     makers: tuple[Callable[[], Any], ...]
     calls: tuple[tuple[int, Callable[[Any], Any]], ...]
-    network: int
+    opening: int
     ends: Ends = "any"
     states: States | None = None
 
@@ -118,14 +118,14 @@ def _standing(lines: Lines, low: str, high: str, current: str) -> str:
     return f"new(Standing, ({low_shown}, {high_shown}, {current_shown}, {verdict}))"
 
 
-def compiled(plan: Plan, lines: Lines, network: int = -1) -> Program:
+def compiled(plan: Plan, lines: Lines, opening: int = -1) -> Program:
     """Compile the lines to a function `step(sample, time)` over a clock, a store and the parts."""
     parts = "".join(f", o{i}" for i in range(len(lines.calls)))
     body = "".join(f"        {line}\n" for line in lines.lines)
     text = f"def build(clock, store{parts}):\n    def step(sample, time):\n{body}    return step\n"
     scope: dict[str, Any] = dict(lines.bound)
     exec(compile(text, "<monitor>", "exec"), scope)  # noqa: S102 - no word of it comes from the spec: see `front`
-    return Program(plan, scope["build"], tuple(lines.initial), tuple(lines.parts), tuple(lines.calls), network)
+    return Program(plan, scope["build"], tuple(lines.initial), tuple(lines.parts), tuple(lines.calls), opening)
 
 
 def shown(value: float) -> float:

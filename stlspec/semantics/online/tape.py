@@ -65,10 +65,57 @@ class Tape(Remembering):
         columns = [np.frombuffer(c, dtype=np.float64)[row:].copy() for c in self.columns]
         return np.frombuffer(self.times, dtype=np.int64)[row:].copy(), columns
 
+    def __len__(self) -> int:
+        return len(self.times)
+
     def check(self, n: int, newest: int) -> None:
         """Check what values together must obey."""
         super().check(n, newest)
         if self.base < 0 or len(self.columns) != self._width or any(len(c) != len(self.times) for c in self.columns):
+            raise Unsound("columns are of unequal length")
+
+
+class CountedTape(Remembering):
+    """The same where time is the number of the sample: at least one column, and no times."""
+
+    __slots__ = ("_width", "base", "columns")
+    STATE: ClassVar[State] = {"base": whole, "columns": lambda value: [column(x) for x in items(value)]}
+
+    def __init__(self, width: int) -> None:
+        self._width = width
+        self.base = 0
+        self.columns = [array("d") for _ in range(width)]
+
+    def needed(self, first: int, reach: int | None) -> int:
+        """Return the first sample that is looked at from sample number `first` on, `reach` samples back."""
+        if reach is None:
+            return self.base
+        # The newest sample is looked at too, should it be the only one.
+        return max(self.base, min(first, self.base + len(self) - 1) - reach)
+
+    def drop(self, first: int, reach: int | None) -> None:
+        """Forget samples that nothing looks at from sample number `first` on; reach: None keeps all."""
+        if reach is None or first - self.base < max(_SMALL, len(self) // 2):
+            return
+        kept = self.needed(first, reach) - self.base
+        if kept >= _SMALL:
+            self.base += kept
+            for values in self.columns:
+                del values[:kept]
+
+    def arrays(self, first: int) -> tuple[NDArray[np.int64], list[NDArray[np.float64]]]:
+        """Return copies from sample number `first` on: (n_samples,) times and columns."""
+        row = first - self.base
+        columns = [np.frombuffer(c, dtype=np.float64)[row:].copy() for c in self.columns]
+        return np.arange(first, self.base + len(self)), columns
+
+    def __len__(self) -> int:
+        return len(self.columns[0])
+
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        if self.base < 0 or len(self.columns) != self._width or len({len(c) for c in self.columns}) != 1:
             raise Unsound("columns are of unequal length")
 
 

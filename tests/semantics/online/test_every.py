@@ -1,40 +1,54 @@
-"""The network of the reading `every`: shared operators, trimming, several requirements."""
+"""The reading `every`: shared operators, trimming, several requirements, with and without counted samples."""
+
+import pytest
 
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
-from stlspec.semantics.online.every import Known, deferred, every_program
+from stlspec.semantics.online.every import Counted, Known, Network, every_program
+from stlspec.semantics.online.opening import deferred
 from stlspec.semantics.online.plan import make_plan
-from tests.semantics.online.cases import STEP, bundle_of
+from tests.semantics.online.cases import PERIOD, STEP, bundle_of
 
 
-def bundle():
+def bundle(base=STEP):
     """a: always[0, 2] x > 0; b: not a; c: x > 0; d: eventually not a, without end."""
     b = Builder()
     p = b.add("gt", [b.add("signal", value="x"), b.add("const", value=0.0)])
-    a = b.add("always", [p], interval=(0, 2))
+    a = b.add("always", [p], interval=(0, 2 * (base.period or 1)))
     no = b.add("not", [a])
     d = b.add("eventually", [no], interval=(0, None))
     roots = {"a": a, "b": no, "c": p, "d": d}
-    return bundle_of(tuple(b.nodes), tuple(Requirement(n, "hard", r) for n, r in roots.items()), (Signal("x"),), STEP)
+    return bundle_of(tuple(b.nodes), tuple(Requirement(n, "hard", r) for n, r in roots.items()), (Signal("x"),), base)
 
 
-def test_requirements_share_operators_and_come_each_at_its_time():
-    spec = bundle()
+@pytest.mark.parametrize(("base", "kind"), [(STEP, Counted), (PERIOD, Network)])
+def test_requirements_come_each_at_its_time(base, kind):
+    unit = (base.period or 1) / base.ticks_per_unit
+    spec = bundle(base)
     program = every_program(spec, make_plan(spec))
     objects = program.objects()
     step = program.bind(objects)
     assert step({"x": 2.0}, None) == [Known(0, 0.0, "c", 2.0, "satisfied")]
-    assert step({"x": 0.0}, None) == [Known(1, 1.0, "c", 0.0, "violated")]
+    assert step({"x": 0.0}, None) == [Known(1, unit, "c", 0.0, "violated")]
     assert set(step({"x": 3.0}, None)) == {
-        Known(2, 2.0, "c", 3.0, "satisfied"),
+        Known(2, 2 * unit, "c", 3.0, "satisfied"),
         Known(0, 0.0, "a", 0.0, "violated"),
         Known(0, 0.0, "b", 0.0, "satisfied"),
     }
-    network = objects.parts[program.network]
-    assert len(network._late) == 2
-    assert network.counts == [1, 1, 3, 0]
-    assert [(first, len(rows)) for first, rows in network.open_samples(3)] == [(1, 2), (1, 2), (3, 0), (0, 3)]
-    assert network.stamps(1).tolist() == [1.0, 2.0]
+    opening = objects.parts[program.opening]
+    assert type(opening) is kind
+    assert opening.first_open(3) == [1, 1, 3, 0]
+    assert [(first, len(rows)) for first, rows in opening.open_samples(3)] == [(1, 2), (1, 2), (3, 0), (0, 3)]
+    assert opening.stamps(1).tolist() == [unit, 2 * unit]
+
+
+def test_operators_are_shared():
+    spec = bundle(PERIOD)
+    assert len(Network(spec, make_plan(spec))._late) == 2
+    assert [type(part).__name__ for part in every_program(bundle(), make_plan(bundle())).objects().parts] == [
+        "Counted",
+        "Block",
+    ]
 
 
 def test_what_looks_ahead_without_end_is_deferred():

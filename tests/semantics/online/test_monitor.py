@@ -285,10 +285,11 @@ def test_every_refuses_what_would_need_a_deep_stack():
             p = b.add("next", [p])
         return {"r": p}
 
-    bundle = spec(deep)
     with pytest.raises(UsageError, match="150 deep"):
-        make_monitor(bundle, "every")
-    assert make_monitor(bundle).update({"x": 1})["r"].verdict == "undecided"
+        make_monitor(spec(deep, base=PERIOD), "every")
+    assert make_monitor(spec(deep)).update({"x": 1})["r"].verdict == "undecided"
+    counted = make_monitor(spec(deep), "every")
+    assert [len(counted.update({"x": 1})) for _ in range(202)] == [0] * 200 + [1, 1]
 
 
 def test_without_samples_nothing_is_finished():

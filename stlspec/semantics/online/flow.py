@@ -1,0 +1,272 @@
+"""Exact values where samples are counted: a schedule that is fixed, written into the monitor's function.
+
+In: the DAG. Out: lines, and the objects that remember. Where time is the index of the sample, an operator whose
+horizon is d gives at sample n its value at n - d, always. So no value carries its time, nothing waits in queues of
+open samples, and the operators are lines of one function in the order of their horizons, in place of the objects
+of `late` that call each other. A window is cut into blocks of its length (van Herk 1992; Gil and Werman 1993): it
+is the end of one block and the beginning of the next, so that it costs constant work a sample on average.
+"""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from itertools import accumulate
+from typing import Any, ClassVar
+
+from stlspec.compiler.horizon import horizons
+from stlspec.compiler.ranges import INF
+from stlspec.semantics.online.front import Front
+from stlspec.semantics.online.past import Greatest, Since, Sliding
+from stlspec.semantics.online.plan import Plan
+from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
+
+
+def queue(value: Any) -> deque[float]:
+    """Read a queue of numbers."""
+    return deque(numbers(value))
+
+
+class Delay(Remembering):
+    """The values of the latest `length` samples; the first value comes with sample number `begin`."""
+
+    __slots__ = ("_begin", "_length", "values")
+    STATE: ClassVar[State] = {"values": queue}
+
+    def __init__(self, begin: int, length: int) -> None:
+        self._begin, self._length = begin, length
+        self.values: deque[float] = deque()
+
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        if len(self.values) != min(max(0, n - self._begin), self._length):
+            raise Unsound("a delay has another length")
+
+
+class Block(Remembering):
+    """The latest `length` values of an operand whose first value comes with sample number `begin`.
+
+    newer: of the running block. older: the least (greatest) of each end of the block before, without that block
+    itself, the shortest first: those that windows still reach into.
+    """
+
+    __slots__ = ("_begin", "_length", "_pick", "newer", "older")
+    STATE: ClassVar[State] = {"newer": numbers, "older": numbers}
+
+    def __init__(self, begin: int, length: int, pick: Callable[[float, float], float]) -> None:
+        self._begin, self._length, self._pick = begin, length, pick
+        self.newer: list[float] = []
+        self.older: list[float] = []
+
+    def turn(self) -> None:
+        """Make the running block, which is complete, the one before."""
+        newer = self.newer
+        self.older += accumulate(newer[:0:-1], self._pick)
+        newer.clear()
+
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        blocks, new = divmod(max(0, n - self._begin), self._length)
+        if len(self.newer) != new or len(self.older) != (self._length - 1 - new if blocks else 0):
+            raise Unsound("a block has another length")
+
+
+class UntilBlock(Remembering):
+    """The same for until: best, held: for each end of the block before until over it, and the least left value."""
+
+    __slots__ = ("_begin", "_length", "best", "held", "lefts", "rights")
+    STATE: ClassVar[State] = {"lefts": numbers, "rights": numbers, "best": numbers, "held": numbers}
+
+    def __init__(self, begin: int, length: int) -> None:
+        self._begin, self._length = begin, length
+        self.lefts: list[float] = []
+        self.rights: list[float] = []
+        self.best: list[float] = []
+        self.held: list[float] = []
+
+    def turn(self) -> None:
+        """Make the running block, which is complete, the one before."""
+        lefts, keep, best = self.lefts[:0:-1], self.best.append, -INF
+        self.held += accumulate(lefts, min)
+        for left, right in zip(lefts, self.rights[:0:-1], strict=True):
+            if left < best:
+                best = left
+            if right > best:
+                best = right
+            keep(best)
+        self.lefts.clear()
+        self.rights.clear()
+
+    def check(self, n: int, newest: int) -> None:
+        """Check what values together must obey."""
+        super().check(n, newest)
+        blocks, new = divmod(max(0, n - self._begin), self._length)
+        old = self._length - 1 - new if blocks else 0
+        if [len(x) for x in (self.lefts, self.rights, self.best, self.held)] != [new, new, old, old]:
+            raise Unsound("a block has another length")
+
+
+class Flow:
+    """Writes the lines that compute operators, each value late by its operator's horizon.
+
+    At sample n the lines of a level run only if n has reached it, those of lower levels before.
+    """
+
+    def __init__(self, plan: Plan, front: Front) -> None:
+        self._plan, self._front, self._lines = plan, front, front.lines
+        found = horizons(plan.nodes, plan.base)
+        self._horizons = [0 if settled else h for settled, h in zip(plan.settled, found, strict=True)]
+        self._levels: dict[int, list[str]] = {0: self._lines.lines}
+        self._names: dict[tuple[int, int], str] = {}
+        self._delayed: dict[tuple[str, int, int], str] = {}
+
+    def horizon(self, index: int) -> int:
+        """Return how many samples late the values of a formula are."""
+        found = self._horizons[index]
+        assert found is not None
+        return found
+
+    def write(self, others: Sequence[int], roots: Sequence[int], tell: Callable[[int, int, str], str]) -> None:
+        """Write formulas and what the function returns.
+
+        Args: others: those that are not settled, children first. roots: of the requirements. tell: names what is
+            told of requirement number i, given its horizon and the variable of its value.
+        """
+        values = {index: self._operator(index) for index in others}
+        told: list[tuple[int, str]] = []
+        for i, root in enumerate(roots):
+            level = self.horizon(root)
+            name = values[root] if root in values else self._front.value(root)
+            self._at(level)
+            told.append((level, self._lines.let(tell(i, level, name))))
+        lines = self._lines.lines = self._levels[0]
+        for level in sorted(self._levels):
+            if level:
+                lines.append(f"if n < {self._lines.bind(level)}:")
+                lines.append(f"    return [{', '.join(name for at, name in told if at < level)}]")
+                lines += self._levels[level]
+        lines.append(f"return [{', '.join(name for _, name in sorted(told, key=lambda x: x[0]))}]")
+
+    def _at(self, level: int) -> None:
+        """Let the next lines be of a level."""
+        self._lines.lines = self._levels.setdefault(level, [])
+
+    def _value(self, index: int, level: int) -> str:
+        """Name the variable that holds the value of a formula from a level on, as late as that level."""
+        own = self.horizon(index)
+        if self._plan.settled[index]:
+            self._at(0)
+            name = self._front.value(index)
+        else:
+            name = self._names[index, own]
+        name = self._later(name, own, level)
+        self._at(level)
+        return name
+
+    def _later(self, name: str, begin: int, level: int) -> str:
+        """Delay a variable; constants and the newest values need none."""
+        if begin == level or name in ("INF", "NINF"):
+            return name
+        key = (name, begin, level)
+        if key not in self._delayed:
+            part = self._lines.keep(lambda: Delay(begin, level - begin))
+            self._at(begin)
+            self._lines.add(f"{self._lines.call(part, lambda delay: delay.values.append)}({name})")
+            self._at(level)
+            self._delayed[key] = self._lines.let(f"{self._lines.call(part, lambda delay: delay.values.popleft)}()")
+        return self._delayed[key]
+
+    def _operator(self, index: int) -> str:
+        """Write an operator once its operands are written."""
+        node = self._plan.nodes[index]
+        level = max(self.horizon(c) for c in node.children)
+        names = [self._value(c, level) for c in node.children]
+        result = self._written(node.op, names, level, node.interval)
+        self._names[index, self.horizon(index)] = result
+        return result
+
+    def _written(self, op: str, names: list[str], level: int, interval: tuple[int, int | None] | None) -> str:
+        lines = self._lines
+        if op == "not":
+            # Not `negated`: a variable may have been passed on to a level above its own.
+            return {"INF": "NINF", "NINF": "INF"}.get(names[0]) or lines.let(f"-{names[0]}")
+        if op in ("and", "or"):
+            return lines.least(names) if op == "and" else lines.greatest(names)
+        if op == "next":
+            return names[0]
+        if op == "prev":
+            before = lines.remember(-INF)
+            result = lines.let(before)
+            lines.add(f"{before} = {names[0]}")
+            return result
+        assert interval is not None
+        low, high = interval
+        if op in ("historically", "once", "since"):
+            kind: Callable[..., Any] = {"historically": Sliding, "once": Greatest, "since": Since}[op]
+            return lines.let(f"{lines.part(lambda: kind(low, high))}(n - {lines.bind(level)}, {', '.join(names)})")
+        assert high is not None
+        if op == "until":
+            return self._until(names, level, low, high)
+        return self._window(names[0], level, high - low + 1, op == "always")
+
+    def _window(self, name: str, begin: int, length: int, least: bool) -> str:
+        """Write the least (greatest) of the latest `length` values of a variable."""
+        if length == 1 or name in ("INF", "NINF"):
+            return name
+        lines, sign, neutral = self._lines, "<" if least else ">", INF if least else -INF
+        part = lines.keep(lambda: Block(begin, length, min if least else max))
+        running = lines.remember(neutral)
+        lines.add(f"{lines.call(part, lambda block: block.newer.append)}({name})")
+        lines.add(f"if {name} {sign} {running}:")
+        lines.add(f"    {running} = {name}")
+        result = lines.let(running)
+        lines.add(f"if {lines.call(part, lambda block: block.older)}:")
+        before = f"{result}o"
+        lines.add(f"    {before} = {lines.call(part, lambda block: block.older.pop)}()")
+        lines.add(f"    if {before} {sign} {result}:")
+        lines.add(f"        {result} = {before}")
+        lines.add(f"elif n >= {lines.bind(begin + length - 1)}:")
+        lines.add(f"    {lines.call(part, lambda block: block.turn)}()")
+        lines.add(f"    {running} = {lines.number(neutral)}")
+        return result
+
+    def _until(self, names: Sequence[str], begin: int, low: int, high: int) -> str:
+        """Write until over [low, high]: until over the last samples, after the least left value before these."""
+        length = high - low + 1
+        result = names[1] if length == 1 else self._until_at_once(names[0], names[1], begin, length)
+        if low == 0:
+            return result
+        level = begin + length
+        left = self._later(names[0], begin, level)
+        self._at(level)
+        held = self._window(left, level, low, least=True)
+        self._at(begin + high)
+        return self._lines.least([held, result])
+
+    def _until_at_once(self, left: str, right: str, begin: int, length: int) -> str:
+        lines = self._lines
+        part = lines.keep(lambda: UntilBlock(begin, length))
+        best, held = lines.remember(-INF), lines.remember(INF)
+        lines.add(f"{lines.call(part, lambda block: block.lefts.append)}({left})")
+        lines.add(f"{lines.call(part, lambda block: block.rights.append)}({right})")
+        result = lines.let(best)
+        reached = f"{result}r"
+        lines.add(f"{reached} = {held}")
+        lines.add(f"if {right} < {reached}:")
+        lines.add(f"    {reached} = {right}")
+        lines.add(f"if {reached} > {result}:")
+        lines.add(f"    {best} = {result} = {reached}")
+        lines.add(f"if {left} < {held}:")
+        lines.add(f"    {held} = {left}")
+        lines.add(f"if {lines.call(part, lambda block: block.best)}:")
+        before = f"{result}o"
+        lines.add(f"    {before} = {lines.call(part, lambda block: block.held.pop)}()")
+        lines.add(f"    if {before} < {result}:")
+        lines.add(f"        {result} = {before}")
+        lines.add(f"    {before} = {lines.call(part, lambda block: block.best.pop)}()")
+        lines.add(f"    if {before} > {result}:")
+        lines.add(f"        {result} = {before}")
+        lines.add(f"elif n >= {lines.bind(begin + length - 1)}:")
+        lines.add(f"    {lines.call(part, lambda block: block.turn)}()")
+        lines.add(f"    {best} = NINF; {held} = INF")
+        return result
