@@ -129,6 +129,29 @@ def _figure(scene: Scene) -> Any:
 
 
 def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
+    image = draw_map(axes, scene, n_columns)
+    bar = figure.colorbar(image, ax=axes, shrink=0.85, pad=0.03)
+    bar.set_label("reward R(s)", color=_INK)
+    bar.outline.set_visible(False)
+    draw_legend(figure, axes, path="learned path" if len(scene.path) > 1 else "")
+
+
+def draw_legend(figure: Any, axes: Any, *, path: str) -> None:
+    """Say below a figure what the marks of `draw_map` mean. Not in the paper. Args: path: what it is, "" = none."""
+    handles, _ = axes.get_legend_handles_labels()
+    handles += _legend_extras(path)
+    style = {"loc": "outside lower center", "ncols": 4, "frameon": False, "fontsize": 8, "labelcolor": _INK}
+    figure.legend(handles=handles, handletextpad=0.5, columnspacing=1.4, **style)
+
+
+def draw_map(axes: Any, scene: Scene, n_columns: int, *, written: bool = True) -> Any:
+    """Draw the values of a scene on its map, with obstacles, path, start and goals, but no legend.
+
+    Paper: one panel of its figures.
+
+    Args:    axes: of matplotlib. n_columns: the width of the map. written: with the values as numbers.
+    Returns: the image of the values, for a colour bar.
+    """
     values = np.array(scene.values).reshape(-1, n_columns)
     limit = max(1e-12, float(np.abs(values).max()))
     n_rows = len(values)
@@ -136,12 +159,10 @@ def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
     aspect = "auto" if stretched else "equal"
     image = axes.imshow(values, cmap="RdBu", vmin=-1.5 * limit, vmax=1.5 * limit, aspect=aspect)
     image.set_clim(-limit, limit)
-    bar = figure.colorbar(image, ax=axes, shrink=0.85, pad=0.03)
-    bar.set_label("reward R(s)", color=_INK)
-    bar.outline.set_visible(False)
     obstacles = np.array(scene.endings).reshape(-1, n_columns) == VIOLATION
     if max(n_rows, n_columns) <= _ANNOTATED_UP_TO:
-        _write_values(axes, values, limit)
+        if written:
+            _write_values(axes, values, limit)
         for row, column in np.argwhere(obstacles).tolist():
             _draw_obstacle(axes, row, column)
         _draw_grid(axes, n_rows, n_columns)
@@ -156,6 +177,7 @@ def _draw_cells(figure: Any, axes: Any, scene: Scene, n_columns: int) -> None:
     axes.set_xlabel("column", color=_MUTED)
     axes.set_ylabel("row", color=_MUTED)
     axes.spines[:].set_visible(False)
+    return image
 
 
 def _draw_grid(axes: Any, n_rows: int, n_columns: int) -> None:
@@ -209,18 +231,14 @@ def _mark_ends(axes: Any, scene: Scene, n_columns: int) -> None:
         row, column = divmod(stop, n_columns)
         style = {"ha": "center", "va": "center", "fontsize": 7, "fontweight": "bold", "color": _INK, "zorder": 6}
         axes.text(column, row + 0.02, str(number), **style)
-    handles, _ = axes.get_legend_handles_labels()
-    handles += _legend_extras(has_path=len(scene.path) > 1)
-    style = {"loc": "outside lower center", "ncols": 4, "frameon": False, "fontsize": 8, "labelcolor": _INK}
-    axes.figure.legend(handles=handles, handletextpad=0.5, columnspacing=1.4, **style)
 
 
-def _legend_extras(*, has_path: bool) -> list[Any]:
+def _legend_extras(path: str) -> list[Any]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    path = [Line2D([], [], color=_PATH, linewidth=2.5, label="learned path")] if has_path else []
-    return [*path, Patch(color=_OBSTACLE, linewidth=0, label="violates a hard requirement")]
+    line = [Line2D([], [], color=_PATH, linewidth=2.5, label=path)] if path else []
+    return [*line, Patch(color=_OBSTACLE, linewidth=0, label="violates a hard requirement")]
 
 
 def _draw_bars(axes: Any, scene: Scene) -> None:

@@ -2,5 +2,7 @@
 
 The data flows one way through the modules:
 maps (random maps, shortest paths, demonstrations on them) and hills (drives of the mountain car) -> cases (the
-tasks of the paper, with the figures that it prints).
+tasks of the paper, with the figures that it prints) -> runs (many runs of the learner as rows of figures) and
+inference (Algorithm 1 measured), within budgets -> experiments -> journal (what was measured, as files) -> claims
+(what reproduces, by rule), tables (with spread: quartiles) and figures -> report -> command.
 """

@@ -155,3 +155,20 @@ def bad_path(rows: Rows, draw: random.Random) -> Path:
     hit = draw.choice(near)
     onwards = () if rows[hit[0]][hit[1]] == "H" else goals
     return shortest(free(rows) | {hit}, (start, hit, *onwards), draw)
+
+
+def moved_holes(rows: Rows, draw: random.Random) -> Rows:
+    """Move all holes of a lake elsewhere, start and goal staying where they are.
+
+    Paper: section 4, the unseen maps of FrozenLake.
+    """
+    count = len(cells(rows, "H"))
+    places = cells(rows, "FH")
+    while True:
+        marks = dict.fromkeys(places, "F") | dict.fromkeys(draw.sample(places, count), "H")
+        moved = tuple("".join(marks.get((r, c), m) for c, m in enumerate(row)) for r, row in enumerate(rows))
+        try:
+            least_steps(moved)
+        except ValueError:
+            continue
+        return moved

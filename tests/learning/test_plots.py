@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from stlspec.learning import plots
-from stlspec.learning.plots import Scene, draw_curve, draw_reward, reward_figure, reward_text
+from stlspec.learning.plots import Scene, draw_curve, draw_legend, draw_map, draw_reward, reward_figure, reward_text
 from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, TERMINAL, VIOLATION
 
 GRID = Scene("a title", (0.25, 0.0, -0.5, 1.0), (RUNS, VIOLATION, VIOLATION, GOAL), 0, (0, 3), 2)
@@ -107,3 +107,16 @@ def test_zones_and_the_order_of_goals_are_written_on_the_map():
     figure = reward_figure(replace(GRID, stops=(3, 0), zones=("", "w", "", "d")))
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert [text for text in texts if text in "wd12"] == ["w", "d", "1", "2"]
+
+
+def test_several_maps_share_a_figure_and_one_legend():
+    figures = pytest.importorskip("matplotlib.figure")
+    figure = figures.Figure()
+    first, second = figure.subplots(1, 2)
+    draw_map(first, GRID, 2)
+    draw_map(second, GRID, 2, written=False)
+    draw_legend(figure, second, path="a way")
+    assert len(first.texts) == 3
+    assert len(second.texts) == 0
+    assert not figure.axes[0].get_legend()
+    assert [text.get_text() for text in figure.legends[0].get_texts()][-2:] == ["a way", "violates a hard requirement"]

@@ -10,6 +10,7 @@ from stlspec.paper.maps import (
     free,
     good_path,
     least_steps,
+    moved_holes,
     random_map,
     roundabout_path,
     shortest,
@@ -86,3 +87,12 @@ def test_shortest_paths_differ_from_draw_to_draw_and_not_for_a_seed():
         ((2, 0), (2, 1), (2, 2), (1, 2), (0, 2)),
     }
     assert good_path(SMALL, random.Random(5)) == good_path(SMALL, random.Random(5))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_holes_move_and_the_goal_can_still_be_reached(seed):
+    rows = ("SFFH", "FHFH", "FFFH", "HFFG")
+    moved = moved_holes(rows, random.Random(seed))
+    assert (cells(moved, "S"), cells(moved, "G")) == (((0, 0),), ((3, 3),))
+    assert len(cells(moved, "H")) == 5
+    assert least_steps(moved) >= 6

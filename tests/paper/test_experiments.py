@@ -1,0 +1,64 @@
+import json
+
+import pytest
+
+from stlspec.paper.cases import TABLE_1, case_of
+from stlspec.paper.experiments import EXPERIMENTS, OPTIONS, rows_from_json, rows_to_json, unseen
+from stlspec.paper.maps import cells
+
+
+def run(name, made):
+    seen = []
+    result = EXPERIMENTS[name].run(made.tiny, 1, lambda number, count: seen.append((number, count)))
+    assert seen
+    return json.loads(json.dumps(result, allow_nan=False))
+
+
+def test_rows_survive_being_kept(made):
+    rows = {"grid-5": {"shaped": made.rows(5, None)}}
+    assert rows_from_json(json.loads(json.dumps(rows_to_json(rows)))) == rows
+
+
+def test_every_row_of_table_1_is_an_experiment():
+    assert [name for name in EXPERIMENTS if name.startswith("table-1-")] == [f"table-1-{name}" for name in TABLE_1]
+    assert all(key == found.name for key, found in EXPERIMENTS.items())
+
+
+def test_lakes_are_learned_by_every_method_from_every_seed(made):
+    rows = rows_from_json(run("lakes", made))
+    assert list(rows) == ["lake-4", "lake-8"]
+    for by in rows.values():
+        assert set(by) == {"shaped", "plain", "shaped, no mask", "standard"} <= set(OPTIONS)
+        assert all([row.seed for row in found] == [0, 1] for found in by.values())
+        assert all(row.success for row in by["shaped"])
+        assert max(row.violations for row in by["shaped"]) < min(row.violations for row in by["standard"])
+
+
+def test_mountain_car_is_learned_within_its_budget(made):
+    by = rows_from_json(run("car-75", made))["car-75"]
+    assert {method: len(found) for method, found in by.items()} == {"shaped": 1, "plain": 1, "standard": 1}
+    assert all(row.episodes == 2 and row.env_steps == 40 and row.probability == 0 for (row,) in by.values())
+
+
+def test_demonstrations_are_scored_for_every_seed_and_size(made):
+    found = run("demonstrations", made)
+    assert len(found["worth"]) == 2 * 3 * 5
+    assert {row["label"] for row in found["worth"]} == {"good", "bad", "incomplete"}
+    assert [row["states"] for row in found["times"].values()] == [25, 100, 400, 1600, 6400]
+
+
+@pytest.mark.parametrize(("name", "has_truth"), [("grid-5", True), ("lake-4", False)])
+def test_a_row_of_table_1_has_times_and_where_there_is_one_the_ground_truth(made, name, has_truth):
+    found = run(f"table-1-{name}", made)
+    assert 0 < found["ours"]["seconds"] < found["ours"]["cold"]
+    assert (found["truth"] is not None) is has_truth
+    assert ("correlation" in found["ours"]) is has_truth
+
+
+@pytest.mark.parametrize("name", ["lake-4", "lake-8"])
+def test_unseen_maps_move_the_holes_and_nothing_else(name):
+    home, maps = case_of(name).map, [case.map for case in unseen(name)]
+    assert len({home, *maps}) == 4
+    for rows in maps:
+        assert len(cells(rows, "H")) == len(cells(home, "H"))
+        assert cells(rows, "SG") == cells(home, "SG")

@@ -1,0 +1,56 @@
+from stlspec.paper import report
+from stlspec.paper.claims import CLAIMS
+from stlspec.paper.experiments import SHAPED, STANDARD
+
+
+def records(made):
+    grids = made.as_json({"grid-5": {SHAPED: made.rows(100, 200), STANDARD: made.rows(400, 400)}})
+    table_1 = dict(made.table_1, irl=made.irl)
+    return {
+        "table-1-grid-5": made.record("table-1-grid-5", table_1, 30.0),
+        "grids": made.record("grids", grids, 90.0),
+    }
+
+
+GOLDEN = """\
+- Budget: tiny: 2 seeds; on Mountain Car 1 with 50, 1 with 75, 1 with 100 bins, 2 episodes each.
+- Time: 2 minutes in all, for 2 experiments.
+- Machine: processors 2, python 3.11.0, stlspec 0.1.0.
+- Load while measuring: 0.5 to 1.5 processes wanting a processor.
+"""
+
+
+def test_the_report_says_how_much_was_measured_and_on_what(made):
+    assert GOLDEN in report.write(records(made))
+
+
+def test_every_claim_stands_in_the_report_with_verdict_figures_and_rule(made):
+    text = report.write(records(made))
+    assert f"{len(CLAIMS)} claims: 2 reproduced, {len(CLAIMS) - 2} not measured." in text
+    assert "**The learned policy satisfies all requirements on single-goal grids.** Reproduced." in text
+    assert "  - measured: grid-5: 2 of 2\n" in text
+    for claim in CLAIMS:
+        assert claim.says in text
+        assert claim.rule in text
+
+
+def test_sections_are_those_of_what_was_run(made):
+    text = report.write(records(made))
+    headings = [line for line in text.splitlines() if line.startswith("## ")]
+    assert headings == [
+        "## Claims of the paper", "## Table 1: time to infer the reward",
+        "## How near the rewards come to the ground truth", "## Single-goal grids", "## What is done differently",
+    ]  # fmt: skip
+    assert "MCE-IRL on grid-5: converged after 10 gradient steps." in text
+
+
+def test_figures_are_shown_under_their_headings(made):
+    text = report.write(records(made), ["map-grid-5.png", "steps-grids.png", "truth-grid-5.png"])
+    assert text.index("## Rewards and ground truth") < text.index("![truth-grid-5](figures/truth-grid-5.png)")
+    assert text.index("## Exploration") < text.index("![steps-grids](figures/steps-grids.png)")
+
+
+def test_a_report_of_nothing_says_so():
+    text = report.write({})
+    assert "Nothing was measured." in text
+    assert f"{len(CLAIMS)} claims: {len(CLAIMS)} not measured." in text
