@@ -29,12 +29,14 @@ from stlspec.lang.repairs import repaired
 from stlspec.lang.statements import (
     NOTHING_LOST,
     STATEMENT_WORDS,
+    Cut,
     Lost,
     begins_like_statement,
     cut,
     first_on_line,
     is_word,
     lost,
+    merged,
     stands_before_statement,
 )
 from stlspec.lang.tree import span_of
@@ -52,7 +54,7 @@ _NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
 _OPENING = frozenset({"LPAR", "LSQB", "LBRACE"})
 _CLOSING = frozenset({"RPAR", "RSQB", "RBRACE"})
 _GUESS = diagnostic("S001", found="", expected="")
-_MOST_REPAIRS = 200
+MOST_REPAIRS = 200
 """How many broken statements of a text are given a way out that was tried; trying costs time."""
 
 
@@ -76,37 +78,62 @@ class Syntax:
     used: tuple["Syntax", ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """What the tokens between two cuts of a text say: one statement, or more if it is broken."""
+
+    statements: tuple[Statement, ...]
+    problems: tuple[Diagnostic, ...]
+    lost: Lost
+
+
 def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
     """Parse every statement of `source`; a broken one costs its neighbours nothing.
 
     names: declared elsewhere, by the files that the text uses; what reads as a name in formulas depends on them.
     """
-    pieces = cut(source, automaton().lark)
-    names |= pieces.names
+    found = cut(source, automaton().lark)
+    names |= found.names
+    pieces: list[Piece] = []
+    repairs = MOST_REPAIRS
+    for tokens in found.statements:
+        pieces.append(parse_piece(source, tokens, names, repairs))
+        repairs -= len(pieces[-1].problems)
+    return assembled(source, pieces, found)
+
+
+def parse_piece(source: SourceText, tokens: Sequence[Token], names: frozenset[str], repairs: int) -> Piece:
+    """Parse the tokens between two cuts.
+
+    Not in the paper: the language.
+
+    Args:    names: what reads as a name; only those among the tokens matter. repairs: for how many broken
+             statements a way out is tried.
+    """
     statements: list[Statement] = []
     problems: list[Diagnostic] = []
     broken: list[Sequence[Token]] = []
-    for tokens in pieces.statements:
-        rest = tokens
-        while rest:
-            node, problem, used = _parsed(source, rest, names, repair=len(problems) < _MOST_REPAIRS)
-            if node is not None:
-                statements.append(node)
-            if problem is not None:
-                problems.append(problem)
-                broken.append(rest[:used] if node is None else _from(rest[:used], problem))
-            rest = rest[used:]
-    if not pieces.statements:
+    while tokens:
+        node, problem, used = _parsed(source, tokens, names, repair=len(problems) < repairs)
+        if node is not None:
+            statements.append(node)
+        if problem is not None:
+            problems.append(problem)
+            broken.append(tokens[:used] if node is None else _from(tokens[:used], problem))
+        tokens = tokens[used:]
+    return Piece(tuple(statements), tuple(problems), lost(broken))
+
+
+def assembled(source: SourceText, pieces: Sequence[Piece], found: Cut) -> Syntax:
+    """Put the pieces of a text together."""
+    statements = tuple(statement for piece in pieces for statement in piece.statements)
+    problems = [problem for piece in pieces for problem in piece.problems]
+    if not pieces:
         problems.append(diagnostic("S016", source=source, span=Span(0, 0)))
-    problems += [p for s in statements for p in _repeated(source, s)]
+    problems += [problem for statement in statements for problem in _repeated(source, statement)]
+    all_lost = merged([piece.lost for piece in pieces if piece.problems])
     return Syntax(
-        source,
-        tuple(statements),
-        tuple(problems),
-        pieces.comments,
-        pieces.names,
-        pieces.requirement_names,
-        lost(broken),
+        source, statements, tuple(problems), found.comments, found.names, found.requirement_names, all_lost
     )
 
 

@@ -45,25 +45,41 @@ def is_word(token: Token) -> bool:
     return _WORD.match(token) is not None
 
 
-def cut(source: SourceText, lark: Lark) -> Cut:
-    """Lex `source` and cut it into statements."""
+def lexed(text: str, lark: Lark) -> tuple[list[Token], list[Text]]:
+    """Return the tokens of a text, and apart the comments. No token goes over the end of a line."""
     tokens: list[Token] = []
     comments: list[Text] = []
-    for token in lark.parse_interactive(source.text, start="lexicon").lexer_thread.lex(None):  # type: ignore[no-untyped-call]
+    for token in lark.parse_interactive(text, start="lexicon").lexer_thread.lex(None):  # type: ignore[no-untyped-call]
         if token.type == "COMMENT":
             comments.append(Text(span_of(token), str(token)))
         else:
             tokens.append(token)
+    return tokens, comments
+
+
+def cut(source: SourceText, lark: Lark) -> Cut:
+    """Lex `source` and cut it into statements."""
+    tokens, comments = lexed(source.text, lark)
     pieces = tuple(_pieces(tokens))
-    declared = frozenset(str(p[1]) for p in pieces if len(p) > 1 and p[0].type in DECLARING)
-    required = frozenset(str(p[1]) for p in pieces if len(p) > 1 and p[0].type in ("HARD", "SOFT"))
+    declared = frozenset(name for piece in pieces for name in declared_by(piece))
+    required = frozenset(name for piece in pieces for name in required_by(piece))
     return Cut(pieces, tuple(comments), declared, required)
+
+
+def declared_by(tokens: Sequence[Token]) -> tuple[str, ...]:
+    """Return the name that a statement declares for formulas, whole or broken; none if it declares none."""
+    return (str(tokens[1]),) if len(tokens) > 1 and tokens[0].type in DECLARING else ()
+
+
+def required_by(tokens: Sequence[Token]) -> tuple[str, ...]:
+    """Return the name of a requirement, whole or broken; none if it is another statement."""
+    return (str(tokens[1]),) if len(tokens) > 1 and tokens[0].type in ("HARD", "SOFT") else ()
 
 
 def _pieces(tokens: Sequence[Token]) -> Iterator[tuple[Token, ...]]:
     begin = 0
     for i in range(1, len(tokens)):
-        if first_on_line(tokens, i) and _begins_statement(tokens, i):
+        if first_on_line(tokens, i) and begins_statement(tokens, i):
             yield tuple(tokens[begin:i])
             begin = i
     if tokens:
@@ -75,7 +91,8 @@ def first_on_line(tokens: Sequence[Token], i: int) -> bool:
     return i == 0 or (tokens[i - 1].end_line or 0) < (tokens[i].line or 0)
 
 
-def _begins_statement(tokens: Sequence[Token], i: int) -> bool:
+def begins_statement(tokens: Sequence[Token], i: int) -> bool:
+    """Tell whether token `i`, the first on its line, begins a statement; that and the next one on the line decide."""
     token = tokens[i]
     if token.type in _RESERVED_STARTS:
         return True
@@ -112,7 +129,7 @@ def stands_before_statement(tokens: Sequence[Token], i: int) -> bool:
     """Tell whether token `i` is the first on its line and the second begins a statement: `) signal d`."""
     if not first_on_line(tokens, i) or i + 1 >= len(tokens) or tokens[i + 1].line != tokens[i].line:
         return False
-    return _begins_statement(tokens, i + 1)
+    return begins_statement(tokens, i + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +146,15 @@ class Lost:
 
 
 NOTHING_LOST = Lost()
+
+
+def merged(parts: Sequence[Lost]) -> Lost:
+    """Return what all parts together may have been meant to say."""
+    return Lost(
+        frozenset[str]().union(*(part.names for part in parts)),
+        any(part.nameless for part in parts),
+        any(part.time for part in parts),
+    )
 
 
 def lost(broken: Sequence[Sequence[Token]]) -> Lost:
