@@ -29,7 +29,6 @@ from stlspec.lang.repairs import repaired
 from stlspec.lang.statements import (
     NOTHING_LOST,
     STATEMENT_WORDS,
-    Cut,
     Lost,
     begins_like_statement,
     cut,
@@ -99,7 +98,7 @@ def parse(source: SourceText, names: frozenset[str] = frozenset()) -> Syntax:
     for tokens in found.statements:
         pieces.append(parse_piece(source, tokens, names, repairs))
         repairs -= len(pieces[-1].problems)
-    return assembled(source, pieces, found)
+    return assembled(source, pieces, found.comments, found.names, found.requirement_names)
 
 
 def parse_piece(source: SourceText, tokens: Sequence[Token], names: frozenset[str], repairs: int) -> Piece:
@@ -124,7 +123,13 @@ def parse_piece(source: SourceText, tokens: Sequence[Token], names: frozenset[st
     return Piece(tuple(statements), tuple(problems), lost(broken))
 
 
-def assembled(source: SourceText, pieces: Sequence[Piece], found: Cut) -> Syntax:
+def assembled(
+    source: SourceText,
+    pieces: Sequence[Piece],
+    comments: tuple[Text, ...],
+    names: frozenset[str],
+    requirement_names: frozenset[str],
+) -> Syntax:
     """Put the pieces of a text together."""
     statements = tuple(statement for piece in pieces for statement in piece.statements)
     problems = [problem for piece in pieces for problem in piece.problems]
@@ -132,9 +137,7 @@ def assembled(source: SourceText, pieces: Sequence[Piece], found: Cut) -> Syntax
         problems.append(diagnostic("S016", source=source, span=Span(0, 0)))
     problems += [problem for statement in statements for problem in _repeated(source, statement)]
     all_lost = merged([piece.lost for piece in pieces if piece.problems])
-    return Syntax(
-        source, statements, tuple(problems), found.comments, found.names, found.requirement_names, all_lost
-    )
+    return Syntax(source, statements, tuple(problems), comments, names, requirement_names, all_lost)
 
 
 def _parsed(
