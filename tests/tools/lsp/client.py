@@ -74,6 +74,7 @@ class Client:
             general = {"positionEncodings": encodings} if encodings is not None else {}
             text = {
                 "publishDiagnostics": {"relatedInformation": True},
+                "rename": {"prepareSupport": True},
                 "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
             }
             space = {

@@ -1,11 +1,21 @@
 """An editor drives the server over its standard streams, through every feature."""
 
+import contextlib
 import json
 import random
 
 import pytest
 
+from stlspec.errors import InputError
+from stlspec.tools.lsp.completion import completion
+from stlspec.tools.lsp.edits import actions, formatting
+from stlspec.tools.lsp.hover import hover
+from stlspec.tools.lsp.navigation import definition, references
+from stlspec.tools.lsp.outline import outline
+from stlspec.tools.lsp.renaming import rename
+from stlspec.tools.lsp.workspace import Workspace
 from tests.lang.mutate import SPECS, mutate, statements
+from tests.lang.soup import soup
 from tests.tools.lsp.client import Client, RefusedError, applied, shape
 
 TEXT = """signal d_obs unit "m" in [0, 50] "Distance"
@@ -171,6 +181,15 @@ def test_a_request_about_what_is_not_open_has_no_result(client):
     )
 
 
+def test_the_editor_is_told_what_there_is(client):
+    told = client.capabilities
+    assert told["textDocumentSync"] == {"openClose": True, "change": 2, "save": {}}
+    assert told["renameProvider"] == {"prepareProvider": True}
+    assert told["codeActionProvider"] == {"codeActionKinds": ["quickfix"]}
+    assert {"hoverProvider", "completionProvider", "definitionProvider", "referencesProvider"} <= told.keys()
+    assert {"documentFormattingProvider", "documentSymbolProvider"} <= told.keys()
+
+
 def test_the_editor_is_asked_to_watch_specs_and_settings(client):
     (asked,) = [m for m in client.asked if m["method"] == "client/registerCapability"]
     (registered,) = asked["params"]["registrations"]
@@ -246,6 +265,28 @@ def test_fifty_random_edits_end_where_a_fresh_start_does(client, tmp_path):
     assert found[0] == found[1]
     for one in (uri, fresh):
         client.close(one)
+
+
+def test_no_text_and_no_place_makes_a_feature_fail():
+    rng = random.Random(4)
+    for _ in range(120):
+        text = (
+            soup(rng) if rng.random() < 0.5 else "\n".join(mutate(rng, part) for part in statements(rng.choice(SPECS)))
+        )
+        space = Workspace()
+        space.open("untitled:1", 1, text)
+        known = space.reviewed("untitled:1")
+        formatting(known)
+        for offset in (rng.randrange(len(text) + 1), rng.randrange(len(text) + 1), len(text)):
+            for place in (hover(known, offset), *completion(known, offset)):
+                assert place is None or 0 <= place.span.start <= place.span.end <= len(text)
+            found = definition(known, offset)
+            assert (found is not None) <= bool(references(space, known, offset))
+            actions(known, 0, offset)
+            with contextlib.suppress(InputError):
+                rename(space, known, offset, "fresh")
+        for symbol in outline(known.syntax) if known.syntax else ():
+            assert 0 <= symbol.span.start <= symbol.span.end <= len(text)
 
 
 def shared(one, other):

@@ -1,12 +1,13 @@
 """No message ends the server but `exit`, and every request is answered."""
 
+import io
+import json
 import os
 import threading
-import time
 
 import pytest
 
-from stlspec.tools.lsp import session
+from stlspec.tools.lsp import server, session, transport
 from tests.tools.lsp.client import Client, RefusedError, shape
 
 URI = "untitled:1"
@@ -189,40 +190,42 @@ def test_an_editor_that_no_longer_reads_ends_the_server(capfd):
 
 
 def test_a_request_taken_back_while_it_waits_is_not_worked_on(monkeypatch):
-    slow = threading.Event()
-    monkeypatch.setattr(session.SpecServer, "report_server_error", lambda *_: None)
-    original = session._Session._handle
+    taken_back = threading.Event()
+    note, handle = transport.Inbox._note, session._Session._handle
 
-    def handle(self, message):
-        slow.wait(5)
-        original(self, message)
+    def noted(self, message):
+        note(self, message)
+        if isinstance(message, dict) and message.get("method") == "$/cancelRequest":
+            taken_back.set()
 
-    monkeypatch.setattr(session._Session, "_handle", handle)
+    def handled(self, message):
+        taken_back.wait(10)
+        handle(self, message)
+
+    monkeypatch.setattr(transport.Inbox, "_note", noted)
+    monkeypatch.setattr(session._Session, "_handle", handled)
     pair = Pair()
     pair.send(INITIALIZE, {"id": 1, **HOVER}, {"method": "$/cancelRequest", "params": {"id": 1}}, {"id": 2, **HOVER})
-    time.sleep(0.2)
-    slow.set()
     assert pair.end() == 1
-    assert b"-32800" in pair.written
-    assert b'"id": 2' in pair.written or b'"id":2' in pair.written
+    answers = [json.loads(body) for body in transport.bodies(io.BytesIO(pair.written).read)]
+    assert [(a["id"], a.get("error", {}).get("code")) for a in answers] == [(0, None), (1, -32800), (2, None)]
 
 
-def test_a_fault_of_ours_is_an_answer_and_a_line_in_the_log(monkeypatch, capfd):
+def test_a_fault_of_ours_is_an_answer_and_a_line_in_the_log(monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("secret")
 
-    from stlspec.tools.lsp import server
-
+    log = []
+    said = threading.Event()
+    monkeypatch.setattr(server, "log", log.append)
+    monkeypatch.setattr(session, "log", lambda text: (log.append(text), said.set()))
     monkeypatch.setattr(server, "hover", broken)
     monkeypatch.setattr(server.Workspace, "findings", broken)
     item = {"uri": URI, "languageId": "stlspec", "version": 1, "text": TEXT}
     pair = Pair()
     pair.send(INITIALIZE, {"method": "textDocument/didOpen", "params": {"textDocument": item}}, {"id": 1, **HOVER})
-    time.sleep(2 * session.QUIET + 0.1)
+    assert said.wait(10)
     pair.send({"id": 2, "method": "shutdown"}, {"method": "exit"})
     assert pair.end() == 0
-    assert b"ZeroDivisionError" in pair.written
-    log = capfd.readouterr().err
-    assert "textDocument/hover failed" in log
-    assert "diagnostics failed" in log
-    assert "Traceback" not in log
+    assert b"a fault of stlspec: ZeroDivisionError" in pair.written
+    assert [line.split(",")[0] for line in log] == ["textDocument/hover failed", "diagnostics failed"]
