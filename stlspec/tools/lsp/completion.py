@@ -6,13 +6,23 @@ is offered all names of formulas.
 """
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from stlspec.compiler.checks import BOUNDINGS
 from stlspec.compiler.expectations import LABELS, TIME
+from stlspec.compiler.inference import ARITHMETIC
 from stlspec.errors import CATALOGUE
-from stlspec.lang.nodes import LetStatement, RequirementStatement, SpecStatement, TimeStatement
+from stlspec.lang.nodes import (
+    Group,
+    LetStatement,
+    RequirementStatement,
+    SignalStatement,
+    SpecStatement,
+    TimeStatement,
+    Truth,
+    operators,
+)
 from stlspec.lang.parse import Syntax
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, TIME_UNITS
 from stlspec.lang.units import KNOWN, STEP, dimension
@@ -159,10 +169,9 @@ def _units(place: _Place) -> Iterator[Item]:
 
 
 def _declared_units(place: _Place) -> Iterator[str]:
-    model = place.reviewed.model
-    for signal in model.signals.values() if model is not None else ():
-        if signal.unit and dimension(signal.unit) is not None:
-            yield signal.unit
+    for _, statement in place.scope.declared.values():
+        if isinstance(statement, SignalStatement) and statement.unit is not None and dimension(statement.unit.text):
+            yield statement.unit.text
 
 
 def _in_formula(place: _Place) -> bool:
@@ -230,9 +239,8 @@ def _formula_names(place: _Place, *, numbers_only: bool) -> Iterator[Item]:
     constant = place.inside() == "LSQB"
     for argument in _arguments(place):
         yield _item(argument, "argument")
-    typings: Mapping[str, object] = place.reviewed.model.let_typings if place.reviewed.model is not None else {}
     for item in _declared(place, ("param", "let") if constant else ("signal", "param", "let")):
-        if not (numbers_only and _is_formula(place, item, typings)):
+        if not (numbers_only and _is_formula(place.scope.declared[item.text][1])):
             yield item
     for name, word in words.FUNCTIONS.items():
         if not constant or name not in ("delta", "rate"):
@@ -241,11 +249,16 @@ def _formula_names(place: _Place, *, numbers_only: bool) -> Iterator[Item]:
         yield _item("now", "value", words.CONSTANTS["now"], 1)
 
 
-def _is_formula(place: _Place, item: Item, typings: Mapping[str, object]) -> bool:
-    if item.kind == "let":
-        return getattr(typings.get(item.text), "kind", "") == "formula" and "(" not in item.detail.split("=")[0]
-    model = place.reviewed.model
-    return item.kind == "signal" and model is not None and model.signals[item.text].type == "bool"
+def _is_formula(statement: Declaration) -> bool:
+    """Tell whether a name stands for a formula, as far as its own statement shows."""
+    match statement:
+        case SignalStatement(type=kind):
+            return kind is not None and kind.text == "bool"
+        case LetStatement(arguments=(), body=body):
+            while isinstance(body, Group):
+                body = body.inner
+            return isinstance(body, Truth) or any(o.word not in ARITHMETIC | {"neg"} for o in operators(body))
+    return False
 
 
 def _arguments(place: _Place) -> Iterator[str]:

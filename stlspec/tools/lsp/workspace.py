@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 from stlspec.compiler import files
@@ -33,18 +33,34 @@ class Location:
     end: Place
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Reviewed:
-    """All that is known of one buffer.
+    """All that is known of one buffer; what the checks say of it is worked out when it is first asked for.
 
-    syntax, model: None if its text is refused. rests_on: the identity of every file that was asked for.
+    syntax: None if its text is refused. rests_on: the identity of every file that was asked for.
     """
 
     document: Document
-    diagnostics: tuple[Diagnostic, ...]
     syntax: Syntax | None = None
-    model: Model | None = None
     rests_on: frozenset[str] = frozenset()
+
+    @cached_property
+    def _judged(self) -> tuple[tuple[Diagnostic, ...], Model | None]:
+        if self.syntax is None:
+            return ((self.document.refusal,) if self.document.refusal else ()), None
+        selection, problems = _settings(self.document)
+        review = review_syntax(self.syntax, None, selection)
+        return (*problems, *review.diagnostics), review.result.model
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What `check` reports."""
+        return self._judged[0]
+
+    @property
+    def model(self) -> Model | None:
+        """What is declared, with types, units and values; None if the text is refused."""
+        return self._judged[1]
 
     @property
     def errors(self) -> bool:
@@ -108,23 +124,16 @@ class Workspace:
         if document is None:
             return None
         if uri not in self._reviewed:
-            self._reviewed[uri] = self._review(document)
+            self._reviewed[uri] = self._read(document)
         return self._reviewed[uri]
 
-    def stale(self) -> bool:
-        """Tell whether some open buffer has no review that holds."""
-        return self._documents.keys() != self._reviewed.keys()
-
-    def _review(self, document: Document) -> Reviewed:
+    def _read(self, document: Document) -> Reviewed:
         if document.source is None:
-            return Reviewed(document, (document.refusal,) if document.refusal else ())
-        selection, problems = _settings(document)
+            return Reviewed(document)
         rests_on: set[str] = set()
         load = partial(self._load, rests_on, {}) if document.is_file else None
         syntax = parse_with_uses(document.source, load, self._parse)
-        review = review_syntax(syntax, None, selection)
-        found = (*problems, *review.diagnostics)
-        return Reviewed(document, found, syntax, review.result.model, frozenset(rests_on))
+        return Reviewed(document, syntax, frozenset(rests_on))
 
     def roots(self, beside: str) -> Iterator[Syntax]:
         """Yield every spec that may say something about a name: the open ones, and those of the folders.

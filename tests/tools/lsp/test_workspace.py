@@ -2,6 +2,7 @@
 
 import pytest
 
+from stlspec.tools.lsp import workspace
 from stlspec.tools.lsp.documents import Change, uri_of
 from stlspec.tools.lsp.positions import Place
 from stlspec.tools.lsp.workspace import Workspace
@@ -47,9 +48,7 @@ def test_only_what_rests_on_a_changed_buffer_is_reviewed_again(here):
     for uri, text in ((main, MAIN), (signals, SIGNALS), (other, "signal x\nhard a: always (x > 0)\n")):
         space.open(uri, 1, text)
     before = {uri: space.reviewed(uri) for uri in (main, signals, other)}
-    assert not space.stale()
     space.change(signals, 2, [Change("# more\n", Place(0, 0), Place(0, 0))])
-    assert space.stale()
     assert space.reviewed(main) is not before[main]
     assert space.reviewed(other) is before[other]
     space.change(other, 2, [Change("\n", Place(0, 0), Place(0, 0))])
@@ -124,3 +123,17 @@ def test_what_is_not_open_is_not_known():
     space.close("file:///a.stl")
     assert space.reviewed("file:///a.stl") is None
     assert space.documents == ()
+
+
+def test_the_checks_are_run_when_they_are_asked_for_and_once(here, monkeypatch):
+    ran = []
+    review = workspace.review_syntax
+    monkeypatch.setattr(workspace, "review_syntax", lambda *given: ran.append(1) or review(*given))
+    space = Workspace()
+    uri = uri_of(str(here / "main.stl"))
+    space.open(uri, 1, MAIN)
+    assert space.reviewed(uri).syntax.statements
+    assert ran == []
+    assert space.reviewed(uri).model is space.reviewed(uri).model
+    assert space.reviewed(uri).diagnostics == ()
+    assert ran == [1]
