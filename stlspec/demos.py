@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stlspec.columns import unmasked
 from stlspec.compiler.files import write_bytes
 from stlspec.envs.catalogue import environment_of, make_live
 from stlspec.envs.model import Environment, derive_actions
@@ -22,7 +23,7 @@ from stlspec.readers import minari
 from stlspec.readers.document import SCHEMA
 from stlspec.readers.model import Array, Recording, checked, column_of, plain, refusal, time_of
 from stlspec.readers.registry import read_recordings
-from stlspec.traces import unmasked, whole_stamps
+from stlspec.traces import whole_stamps
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stlspec.columns import first_true, to_column, unmasked
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
@@ -34,14 +35,14 @@ _PERIOD_TOLERANCE = 0.01 * (1 + 1e-9)
 class Trace:
     """Sampled signals; of one recording, or of a batch of recordings with common times.
 
-    times: int64 ticks since the first sample, (n_samples,), strictly increasing.
+    ticks: since the first sample, strictly increasing: int64, (n_samples,), or a range where no stamps tell them.
     signals: float64, (n_samples,), for a batch time-major (n_samples, n_traces); Booleans are 1.0 and 0.0.
     spacing: ticks between samples if it is the same everywhere (or there is one sample), else None.
     ticks_per_unit, unit: of the spec's time. stamps: the time stamps as given, in `unit`, if they mean
     anything (not for `time step`). numbers: for a batch, the number of each trace in messages.
     """
 
-    times: Ints
+    ticks: Ints | range
     signals: Mapping[str, Floats]
     spacing: int | None
     ticks_per_unit: int
@@ -53,7 +54,12 @@ class Trace:
     @property
     def n_samples(self) -> int:
         """Number of samples."""
-        return len(self.times)
+        return len(self.ticks)
+
+    @property
+    def times(self) -> Ints:
+        """The ticks of the samples as an array, (n_samples,); not to be written to."""
+        return ticks_array(self.ticks)
 
     @property
     def n_traces(self) -> int:
@@ -69,13 +75,13 @@ class Trace:
         """Return the first `n_samples` samples of the traces of a batch from number `first` in it up to `end`."""
         assert self.numbers is not None
         parts = {name: np.ascontiguousarray(values[:n_samples, first:end]) for name, values in self.signals.items()}
-        return replace(self, times=self.times[:n_samples], signals=parts, numbers=self.numbers[first:end])
+        return replace(self, ticks=self.ticks[:n_samples], signals=parts, numbers=self.numbers[first:end])
 
     def time(self, sample: int) -> float:
         """Return the time of a sample in the spec's unit, as it was given if it was given."""
         if self.stamps is not None:
             return float(self.stamps[sample])
-        return int(self.times[sample]) / self.ticks_per_unit
+        return int(self.ticks[sample]) / self.ticks_per_unit
 
     def place(self, sample: int, column: int = 0) -> str:
         """Name a sample in a message: "3", or "3 of trace 1" in a batch."""
@@ -117,19 +123,19 @@ def make_trace(
     for signal in declared:
         if signal.name in signals:
             values = signals[signal.name]
-            columns[signal.name] = _column(signal.name, values, file, signal.type, numbers or ())
+            columns[signal.name] = to_column(signal.name, values, file, signal.type, numbers or ())
         elif signal.name in needed:
             raise _missing(signal.name, signals, file)
     shape = _common_shape(columns, signals, time, numbers, file)
-    times, stamps = _times(base, shape[0], time, file)
+    ticks, stamps = _ticks(base, shape[0], time, file)
     if len(shape) == 1:
         numbers = None
     elif numbers is None:
         numbers = range(shape[1])
     trace = Trace(
-        times=_frozen(times),
+        ticks=ticks if isinstance(ticks, range) else _frozen(ticks),
         signals=MappingProxyType({name: _frozen(column) for name, column in columns.items()}),
-        spacing=_spacing(base, times, stamps),
+        spacing=_spacing(base, ticks, stamps),
         ticks_per_unit=base.ticks_per_unit,
         unit=base.unit,
         stamps=None if stamps is None else _frozen(stamps),
@@ -149,7 +155,17 @@ def time_ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None 
     Raises:  DataError D802, D805, D806, D810, D812: stamps are needed and missing, or cannot be used.
     """
     free = base if time is None else replace(base, kind="stamps", period=None)
-    return _times(free, n, time, file)[0]
+    return ticks_array(_ticks(free, n, time, file)[0])
+
+
+def ticks_array(ticks: Ints | range) -> Ints:
+    """Return ticks as int64, (n_samples,); not to be written to, for traces of one length share them.
+
+    Not in the paper: exactness of time.
+    """
+    if not isinstance(ticks, range):
+        return ticks
+    return _shared_ticks(ticks) if len(ticks) <= _LONGEST_SHARED else _array_of(ticks)
 
 
 def whole_stamps(values: ArrayLike) -> Ints | None:
@@ -161,19 +177,6 @@ def whole_stamps(values: ArrayLike) -> Ints | None:
     if array.dtype.kind not in "iu" or (array.dtype == np.uint64 and array.max(initial=0) > _INT64_MOST):
         return None
     return array.astype(np.int64)
-
-
-def unmasked(values: Any) -> Any:
-    """Return samples with NaN where a masked array hides them, since a hidden value is no sample.
-
-    Not in the paper: an interface.
-    """
-    if isinstance(values, np.ma.MaskedArray):
-        kind = np.float64 if values.dtype.kind in "biuf" else object
-        return np.ma.filled(values.astype(kind), np.nan)
-    if isinstance(values, list | tuple) and values and not isinstance(values[0], int | float):
-        return [unmasked(row) if isinstance(row, np.ma.MaskedArray) else row for row in values]
-    return values
 
 
 def _frozen(values: NDArray[Any]) -> NDArray[Any]:
@@ -192,60 +195,6 @@ def _missing(name: str, signals: Mapping[str, ArrayLike], file: str | None) -> D
     return _error("D804", file, signal=name, help=f'{hint} (`from "{close[0]}"` reads it)' if close else hint)
 
 
-def _column(name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()) -> Floats:
-    """Convert the values of one signal to a fresh float64 array, time-major."""
-    values = unmasked(values)
-    try:
-        raw = np.asarray(values)
-    except (ValueError, TypeError, OverflowError):
-        raise _error("D813", file, what=f"'{name}'", problem="has rows of unequal length or depth") from None
-    if raw.ndim not in (1, 2):
-        problem = "is a single value" if raw.ndim == 0 else f"has {raw.ndim} dimensions"
-        raise _error("D813", file, what=f"'{name}'", problem=problem)
-    if raw.dtype.kind not in "biuf":
-        raw = _converted(values, name, kind, numbers, file)
-    with np.errstate(over="ignore"):
-        column = np.array(raw.T, dtype=np.float64, order="C", copy=True)
-    if kind == "bool":
-        wrong = (column != 0) & (column != 1) & ~np.isnan(column)
-        if wrong.any():
-            at = _first(wrong)
-            raise _bad_value(name, kind, column[at], at, numbers, file)
-    return column
-
-
-def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], file: str | None) -> Floats:
-    """Convert what numpy does not see as numbers; the first value that is none is reported."""
-    objects = np.asarray(values, dtype=object)
-    result = np.empty(objects.shape)
-    for at, value in np.ndenumerate(objects):
-        try:
-            if isinstance(value, (str, bytes, complex)):
-                raise TypeError
-            result[at] = value
-        except (TypeError, ValueError, OverflowError):
-            raise _bad_value(name, kind, value, at[::-1], numbers, file) from None
-    return result
-
-
-def _bad_value(
-    name: str, kind: str, value: object, at: tuple[int, ...], numbers: Sequence[int], file: str | None
-) -> DataError:
-    shown = number_text(float(value)) if isinstance(value, (float, np.floating)) else _clipped(repr(value))
-    where = str(at[0]) if len(at) == 1 else f"{at[0]} of trace {numbers[at[1]] if numbers else at[1]}"
-    hint = "write true, false, 1 or 0" if kind == "bool" else "write a number, inf or -inf"
-    return _error("D806", file, signal=name, value=shown, sample=where, type=kind, help=hint)
-
-
-def _clipped(text: str) -> str:
-    return text if len(text) <= 30 else text[:29] + "…"
-
-
-def _first(mask: NDArray[np.bool_]) -> tuple[int, ...]:
-    """Return the index of the first True, earliest sample first."""
-    return tuple(int(i) for i in np.unravel_index(int(mask.argmax()), mask.shape))
-
-
 def _common_shape(
     columns: Mapping[str, Floats],
     signals: Mapping[str, ArrayLike],
@@ -258,7 +207,7 @@ def _common_shape(
     if not shapes:
         # No declared signal is here (the formulas use `now` only): any column tells the length.
         others = list(signals.items())[:1] or ([] if time is None else [("time", time)])
-        shapes = {name: _column(name, values, file).shape for name, values in others}
+        shapes = {name: to_column(name, values, file).shape for name, values in others}
     if not shapes:
         raise _error("D803", file, where=": there is neither a signal nor a time stamp")
     other, expected = next(iter(shapes.items()))
@@ -276,14 +225,14 @@ def _common_shape(
     return expected
 
 
-def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> tuple[Ints, Floats | None]:
+def _ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> tuple[Ints | range, Floats | None]:
     """Return the ticks of the samples since the first, and the stamps if they count."""
     if time is None:
         if base.kind == "stamps":
             raise _error("D810", file, unit=base.unit)
         return _even_ticks(n, base.period or 1), None
     time = unmasked(time)
-    stamps = _column("time", time, file)
+    stamps = to_column("time", time, file)
     if stamps.ndim != 1:
         raise _error("D813", file, what="'time'", problem="has one row for each trace, but the signals do not")
     if len(stamps) != n:
@@ -310,14 +259,17 @@ def _times(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
     return rounded, stamps
 
 
-def _even_ticks(n: int, period: int) -> Ints:
-    """Return the ticks of n evenly spaced samples; not to be written to, for traces share them."""
-    return _shared_ticks(n, period) if n <= _LONGEST_SHARED else np.arange(n, dtype=np.int64) * period
+def _even_ticks(n: int, period: int) -> range:
+    return range(0, n * period, period)
+
+
+def _array_of(ticks: range) -> Ints:
+    return np.arange(len(ticks), dtype=np.int64) * ticks.step + ticks.start
 
 
 @lru_cache(maxsize=4)
-def _shared_ticks(n: int, period: int) -> Ints:
-    return _frozen(np.arange(n, dtype=np.int64) * period)
+def _shared_ticks(ticks: range) -> Ints:
+    return _frozen(_array_of(ticks))
 
 
 def _check_increasing(values: NDArray[Any], stamps: Floats | Ints, file: str | None) -> None:
@@ -344,10 +296,10 @@ def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None) 
     return whole.astype(np.int64) * period
 
 
-def _spacing(base: TimeBase, times: Ints, stamps: Floats | None) -> int | None:
-    if stamps is None or len(times) == 1:
+def _spacing(base: TimeBase, ticks: Ints | range, stamps: Floats | None) -> int | None:
+    if stamps is None or len(ticks) == 1:
         return base.period or 1
-    steps = np.diff(times)
+    steps = np.diff(ticks)
     return int(steps[0]) if (steps == steps[0]).all() else None
 
 
@@ -360,7 +312,7 @@ def _check_values(trace: Trace, declared: Sequence[Signal]) -> None:
         with np.errstate(invalid="ignore"):
             least = column.min()
         if np.isnan(least):
-            at = _first(np.isnan(column))
+            at = first_true(np.isnan(column))
             raise _error("D801", trace.file, signal=signal.name, **_where(trace, at))
         low = -np.inf if signal.low is None else signal.low
         high = np.inf if signal.high is None else signal.high
@@ -368,7 +320,7 @@ def _check_values(trace: Trace, declared: Sequence[Signal]) -> None:
             continue
         outside = (column < low) | (column > high)
         if outside.any():
-            at = _first(outside)
+            at = first_true(outside)
             bounds = {"low": number_text(low), "high": number_text(high)}
             value = number_text(column[at])
             where = _where(trace, at)

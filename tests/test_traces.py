@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from stlspec import traces
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.errors import DataError
-from stlspec.traces import make_trace
+from stlspec.traces import make_trace, ticks_array
 
 STEP = TimeBase("step", "step", 1)
 SECONDS = TimeBase("stamps", "s", 10**9)
@@ -132,7 +133,10 @@ def test_infinite_samples_are_values():
 
 @pytest.mark.parametrize(
     ("values", "sample"),
-    [([1, "2"], 1), (["a"], 0), ([1, 2j], 1), (np.array(["x"]), 0), ([10**400], 0)],
+    [
+        *[([1, "2"], 1), (["a"], 0), ([1, 2j], 1), (np.array(["x"]), 0), ([10**400], 0)],
+        *[([1.5, 2.5, b"3"], 2), ((True, "1"), 1), ([1.0, 10**400], 1)],
+    ],
 )
 def test_a_value_that_is_no_number_is_refused(values, sample):
     assert f"at sample {sample}" in refused("D806", STEP, [X], {"x": values})
@@ -193,6 +197,22 @@ def test_stamps_less_than_a_nanosecond_apart_count_as_equal():
 @pytest.mark.parametrize("stamp", [INF, np.nan, 1e300, 5e9])
 def test_a_stamp_that_does_not_fit_is_refused(stamp):
     assert "at sample 1" in refused("D812", SECONDS, [X], {"x": [1, 2]}, [0, stamp])
+
+
+@pytest.mark.parametrize(("base", "step"), [(STEP, 1), (TENTHS, 100 * 10**6)])
+def test_evenly_spaced_ticks_take_no_memory_and_are_the_same_as_an_array(base, step):
+    trace = make_trace(base, [X], {"x": [1.0] * 5})
+    assert trace.ticks == range(0, 5 * step, step)
+    assert trace.times.tolist() == list(trace.ticks)
+    assert trace.times.dtype == np.int64
+    assert not trace.times.flags.writeable
+    assert trace.time(3) == 3 * step / base.ticks_per_unit
+
+
+@pytest.mark.parametrize("n", [4, traces._LONGEST_SHARED + 1])
+def test_a_part_of_the_ticks_is_a_part_of_the_array(n):
+    whole = range(0, 3 * n, 3)
+    assert np.array_equal(ticks_array(whole[2:]), ticks_array(whole)[2:])
 
 
 def test_a_unit_needs_stamps():

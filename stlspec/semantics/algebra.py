@@ -235,7 +235,7 @@ def error_bound(nodes: Sequence[Node], root: int, trace: Trace, temperature: flo
     Returns: (below, above), both at least 0: exact - below <= smooth <= exact + above at every sample, up to
              rounding; equal infinities count as equal.
     """
-    grid = Grid(trace.times, trace.spacing)
+    grid = Grid(trace.ticks, trace.spacing)
     bounds: list[tuple[float, float]] = []
     for node in nodes[: root + 1]:
         below = max((bounds[c][0] for c in node.children), default=0.0)

@@ -66,7 +66,7 @@ def values_below(nodes: Sequence[Node], root: int, trace: Trace, at: int) -> Val
     """
     formulas = [i for i in needed_nodes(nodes, [root]) if nodes[i].op not in REAL]
     values = dict(zip(formulas, evaluate_nodes(nodes, formulas, trace), strict=True))
-    return Values(nodes, root, at, Grid(trace.times, trace.spacing), values)
+    return Values(nodes, root, at, Grid(trace.ticks, trace.spacing), values)
 
 
 def find_chain(found: Values, predicate: int | None, sample: int) -> tuple[Link, ...]:
@@ -103,7 +103,7 @@ def bearing_samples(found: Values, chain: Sequence[Link], *, fewest: bool = Fals
              turn the operator round keep as few samples as hit all of them, the chain's own first.
     Returns: (n_samples,) bool.
     """
-    mask = np.zeros(len(found.grid.times), dtype=np.bool_)
+    mask = np.zeros(len(found.grid), dtype=np.bool_)
     mask[found.at] = True
     holds = found.wanted > 0
     for link, below in pairwise(chain):
@@ -127,7 +127,7 @@ def bearing_samples(found: Values, chain: Sequence[Link], *, fewest: bool = Fals
 
 def _ends(found: Values, predicate: int | None, sample: int) -> dict[int, Bools]:
     """Mark where a chain may end: (n_samples,) for each node."""
-    n = len(found.grid.times)
+    n = len(found.grid)
     if predicate is not None:
         mark = np.zeros(n, dtype=np.bool_)
         mark[sample] = True
@@ -191,7 +191,7 @@ def _read(found: Values, index: int, position: int, level: float) -> Ranges:
     """Return the samples that a node reads of an operand where its own value is `level` or more."""
     node = found.nodes[index]
     if node.interval is None and node.op not in ("next", "prev"):
-        samples = np.arange(len(found.grid.times), dtype=np.int64)
+        samples = np.arange(len(found.grid), dtype=np.int64)
         return samples, samples + 1
     window = _windows(found, index)
     if node.op not in ("until", "since"):
@@ -205,7 +205,7 @@ def _read(found: Values, index: int, position: int, level: float) -> Ranges:
 
 def _windows(found: Values, index: int) -> Ranges:
     """Return the windows of a temporal operator."""
-    node, n = found.nodes[index], len(found.grid.times)
+    node, n = found.nodes[index], len(found.grid)
     samples = np.arange(n, dtype=np.int64)
     if node.op == "next":
         return np.minimum(samples + 1, n), np.minimum(samples + 2, n)

@@ -198,13 +198,13 @@ def _number_at(
     if node.op == "signal":
         return float(trace.signals[str(node.value)][sample])
     if node.op == "now":
-        return float(trace.times[sample] - trace.times[0]) / trace.ticks_per_unit
+        return float(trace.ticks[sample] - trace.ticks[0]) / trace.ticks_per_unit
     operands = [row[c] for c in node.children]
     if node.op in ("delta", "rate"):
         if sample == 0 or previous is None:
             return 0.0
         change = operands[0] - previous[node.children[0]]
-        elapsed = float(trace.times[sample] - trace.times[sample - 1]) / trace.ticks_per_unit
+        elapsed = float(trace.ticks[sample] - trace.ticks[sample - 1]) / trace.ticks_per_unit
         return change if node.op == "delta" else change / elapsed
     return fold(node.op, operands)
 

@@ -340,7 +340,7 @@ def _check_end(end: str) -> None:
 
 def _check_length(bundle: BundleData, trace: Trace, sample: int) -> None:
     """Refuse a trace that ends before the horizon of a requirement."""
-    length = int(trace.times[-1]) - int(trace.times[sample])
+    length = int(trace.ticks[-1]) - int(trace.ticks[sample])
     reach = bounded_reach(bundle.nodes, bundle.time)
     errors = [
         diagnostic(

@@ -256,7 +256,7 @@ def all_values(
     Args:    algebra, nodes, roots, trace: as `evaluate_in`. at: the only sample that is wanted of the roots.
     Returns: for each node the values; those of until are ⊥ where what is wanted does not depend on them.
     """
-    grid = Grid(trace.times, trace.spacing)
+    grid = Grid(trace.ticks, trace.spacing)
     wanted = {} if at is None else wanted_samples(nodes, roots, grid, at)
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):
@@ -312,7 +312,7 @@ def wanted_samples(nodes: Sequence[Node], roots: Sequence[int], grid: Grid, at: 
 
     Returns: for each formula below the roots a mask, (n_samples,).
     """
-    n = len(grid.times)
+    n = len(grid)
     wanted = {root: np.arange(n) == at for root in roots}
     for index in reversed(needed_nodes(nodes, roots)):
         node = nodes[index]

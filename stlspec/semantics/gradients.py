@@ -125,7 +125,7 @@ def _of_witness(nodes: Sequence[Node], root: int, trace: Trace, values: Mapping[
 def _of_formulas(nodes: Sequence[Node], root: int, trace: Trace, algebra: Algebra) -> dict[int, Floats]:
     """Accumulate backwards from the root to the sides of all predicates."""
     values = all_values(algebra, nodes, [root], trace, at=0)
-    grid = Grid(trace.times, trace.spacing)
+    grid = Grid(trace.ticks, trace.spacing)
     start = np.zeros(trace.n_samples)
     start[0] = 1.0
     cotangents = {root: start}

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stlspec.columns import unmasked
 from stlspec.errors import DataError, diagnostic
-from stlspec.traces import unmasked, whole_stamps
+from stlspec.traces import whole_stamps
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -64,7 +64,7 @@ def evaluate_at(nodes: Sequence[Node], roots: Sequence[int], trace: Trace, at: i
     Raises:  DataError: a real expression is not a number at some sample, needed or not.
     """
     order = schedule(nodes, roots)
-    spans = needed_spans(nodes, order, roots, Grid(trace.times, trace.spacing), at)
+    spans = needed_spans(nodes, order, roots, Grid(trace.ticks, trace.spacing), at)
     plan = _Plan(nodes, roots, order, spans)
     result = np.empty((len(roots), trace.n_traces))
     spare: list[Floats] = []
@@ -114,7 +114,7 @@ def _evaluate(plan: _Plan, trace: Trace, spare: list[Floats]) -> list[Floats]:
     uses = [0] * len(nodes)
     for index in chain(plan.roots, *(nodes[i].children for i in plan.order)):
         uses[index] += 1
-    grid, shape = Grid(trace.times, trace.spacing), (plan.longest, *trace.shape[1:])
+    grid, shape = Grid(trace.ticks, trace.spacing), (plan.longest, *trace.shape[1:])
     values: dict[int, Floats] = {}
     with np.errstate(all="ignore"):
         for index in plan.order:
@@ -184,7 +184,7 @@ def _formula_values(node: Node, operands: list[Floats], trace: Trace, reads: Spa
     if op in COMPARISONS:
         compare(op, operands[0], operands[1], out)
     elif op in _TEMPORAL:
-        _TEMPORAL[op](*operands, Grid(trace.times[samples], trace.spacing), node.interval, out)
+        _TEMPORAL[op](*operands, Grid(trace.ticks[samples], trace.spacing), node.interval, out)
     elif op in ("and", "or"):
         extremum = np.minimum if op == "and" else np.maximum
         extremum(operands[0], operands[1], out=out)

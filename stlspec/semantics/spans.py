@@ -27,7 +27,7 @@ def needed_spans(nodes: Sequence[Node], order: Sequence[int], roots: Sequence[in
              at: a sample.
     Returns: for each node a range that holds all needed samples; (0, 0) for those not below the roots.
     """
-    n = len(grid.times)
+    n = len(grid)
     spans: list[Span] = [(0, 0)] * len(nodes)
     for root in roots:
         spans[root] = at, at + 1
@@ -51,14 +51,14 @@ def read_span(node: Node, span: Span, grid: Grid) -> Span:
     if node.op in FUTURE:
         return first, _reach(node, end, grid)
     if node.op in PAST:
-        n = len(grid.times)
+        n = len(grid)
         return n - _reach(node, n - first, grid.reversed()), end
     return span
 
 
 def _reach(node: Node, end: int, grid: Grid) -> int:
     """Return how far an operator reads that is needed before `end`, as seen in the direction in which it looks."""
-    n, times = len(grid.times), grid.times
+    n = len(grid)
     if node.interval is None:
         return min(end + 1, n)
     _, high = node.interval
@@ -66,6 +66,7 @@ def _reach(node: Node, end: int, grid: Grid) -> int:
         return n
     if grid.spacing is not None:
         return min(end + high // grid.spacing, n)
+    times = grid.times
     # Clipped to the length of the trace, which changes no window, so that the sum fits into int64.
     high = min(high, int(times[-1]) - int(times[0]))
     return int(np.searchsorted(times, times[end - 1] + high, "right"))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from stlspec.compiler.ir import Interval
 from stlspec.semantics.scans import suffix_extremum, suffix_until
+from stlspec.traces import ticks_array
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,14 +29,23 @@ _LOOKUP = 4096
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """When the samples are: int64 ticks, and the ticks between neighbours where these are all equal."""
+    """When the samples are: ticks, as int64 or a range, and the ticks between neighbours where these are all equal."""
 
-    times: Ints
+    ticks: Ints | range
     spacing: int | None
 
+    def __len__(self) -> int:
+        """How many samples there are."""
+        return len(self.ticks)
+
+    @property
+    def times(self) -> Ints:
+        """The ticks as an array, (n_samples,); not to be written to."""
+        return ticks_array(self.ticks)
+
     def reversed(self) -> "Grid":
-        """Return the same samples as seen backwards in time."""
-        return Grid(-self.times[::-1], self.spacing)
+        """Return the same samples as seen backwards in time; where they are evenly spaced, it looks the same."""
+        return self if self.spacing is not None else Grid(-self.times[::-1], None)
 
 
 def always(values: Floats, grid: Grid, interval: Interval, out: Floats | None = None) -> Floats:
@@ -121,15 +131,15 @@ def index_windows(grid: Grid, interval: Interval) -> tuple[Ints, Ints]:
     Returns: first and end (exclusive) of the window of every sample, (n_samples,) each; both never decrease,
              and first == end where the window is empty.
     """
-    times, n = grid.times, len(grid.times)
-    low, high = interval
-    span = int(times[-1]) - int(times[0])
+    n, (low, high) = len(grid), interval
     index = np.arange(n, dtype=np.int64)
     if grid.spacing is not None:
         begin = np.minimum(index + min(-(-low // grid.spacing), n), n)
         count = n if high is None else min(high // grid.spacing + 1, n)
         end = np.minimum(index + count, n)
     else:
+        times = grid.times
+        span = int(times[-1]) - int(times[0])
         # Clipped to the length of the trace, which changes no window, so that the sums fit into int64.
         low, high = min(low, span + 1), span if high is None else min(high, span)
         begin = index if low == 0 else _positions(times, low, "left")

@@ -60,7 +60,7 @@ class _Marks:
 
     def __init__(self, nodes: Sequence[Node], root: int, trace: Trace, at: int) -> None:
         self.nodes = nodes
-        self.grid = Grid(trace.times, trace.spacing)
+        self.grid = Grid(trace.ticks, trace.spacing)
         self.formulas = [i for i in needed_nodes(nodes, [root]) if nodes[i].op not in REAL]
         columns = evaluate_nodes(nodes, self.formulas, trace)
         rows = (np.ascontiguousarray(c.T).reshape(trace.n_traces, -1) for c in columns)
