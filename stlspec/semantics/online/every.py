@@ -179,7 +179,9 @@ def every_program(bundle: BundleData, plan: Plan, states: States | None = None) 
 def _counted_program(bundle: BundleData, plan: Plan, front: Front) -> Program:
     lines, late = front.lines, set(deferred(bundle, plan))
     part = lines.keep(lambda: Counted(bundle, plan))
-    _keep(front, part, Counted(bundle, plan).inputs, [])
+    inputs = Counted(bundle, plan).inputs
+    _keep(front, part, inputs, [])
+    taped = {front.value(index): lines.call(part, _column(slot)) for slot, index in enumerate(inputs)}
     bounded = [r for r in bundle.requirements if r.name not in late]
     roots = [r.root for r in bounded]
     names = {"KNOWN": Known, "new": tuple.__new__, "SAT": Verdict.SATISFIED, "VIO": Verdict.VIOLATED}
@@ -194,7 +196,7 @@ def _counted_program(bundle: BundleData, plan: Plan, front: Front) -> Program:
         verdict = f"SAT if {value} > 0 else VIO"
         return f"new(KNOWN, (j := {sample}, j / {per_unit}, {name_of[i]}, {shown}, {verdict}))"
 
-    Flow(plan, front).write(needed(plan, roots)[1], roots, tell)
+    Flow(plan, front, taped).write(needed(plan, roots)[1], roots, tell)
     return compiled(plan, lines, part)
 
 
@@ -205,6 +207,10 @@ def _keep(front: Front, part: int, inputs: Sequence[int], more: Sequence[str]) -
         lines.add(f"{lines.call(part, _appender(slot))}({name})")
     lines.add("if not n & 255:")
     lines.add(f"    {lines.call(part, lambda opening: opening.trim)}(n + 1)")
+
+
+def _column(slot: int) -> Callable[[Opening], Sequence[float]]:
+    return lambda opening: opening.tape.columns[slot]
 
 
 def _appender(slot: int) -> Callable[[Opening], Callable[[float], None]]:

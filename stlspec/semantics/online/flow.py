@@ -8,7 +8,7 @@ is the end of one block and the beginning of the next, so that it costs constant
 """
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate
 from typing import Any, ClassVar
 
@@ -45,50 +45,50 @@ class Delay(Remembering):
 class Block(Remembering):
     """The latest `length` values of an operand whose first value comes with sample number `begin`.
 
-    newer: of the running block. older: the least (greatest) of each end of the block before, without that block
-    itself, the shortest first: those that windows still reach into.
+    newer: of the running block, if it is kept here; the values of settled operands are on the tape anyway. older:
+    the least (greatest) of each end of the block before, without that block itself, the shortest first: those
+    that windows still reach into.
     """
 
-    __slots__ = ("_begin", "_length", "_pick", "newer", "older")
+    __slots__ = ("_begin", "_kept", "_length", "_pick", "newer", "older")
     STATE: ClassVar[State] = {"newer": numbers, "older": numbers}
 
-    def __init__(self, begin: int, length: int, pick: Callable[[float, float], float]) -> None:
-        self._begin, self._length, self._pick = begin, length, pick
+    def __init__(self, begin: int, length: int, pick: Callable[[float, float], float], kept: bool) -> None:
+        self._begin, self._length, self._pick, self._kept = begin, length, pick, kept
         self.newer: list[float] = []
         self.older: list[float] = []
 
-    def turn(self) -> None:
-        """Make the running block, which is complete, the one before."""
-        newer = self.newer
-        self.older += accumulate(newer[:0:-1], self._pick)
-        newer.clear()
+    def turn(self, values: Sequence[float]) -> None:
+        """Make the running block, which is complete, the one before; values: end with those of the block."""
+        self.older += accumulate(values[: -self._length : -1], self._pick)
+        self.newer.clear()
 
     def check(self, n: int, newest: int) -> None:
         """Check what values together must obey."""
         super().check(n, newest)
-        blocks, new = divmod(max(0, n - self._begin), self._length)
-        if len(self.newer) != new or len(self.older) != (self._length - 1 - new if blocks else 0):
+        new, old = _sizes(n - self._begin, self._length)
+        if [len(self.newer), len(self.older)] != [new * self._kept, old]:
             raise Unsound("a block has another length")
 
 
 class UntilBlock(Remembering):
     """The same for until: best, held: for each end of the block before until over it, and the least left value."""
 
-    __slots__ = ("_begin", "_length", "best", "held", "lefts", "rights")
+    __slots__ = ("_begin", "_kept", "_length", "best", "held", "lefts", "rights")
     STATE: ClassVar[State] = {"lefts": numbers, "rights": numbers, "best": numbers, "held": numbers}
 
-    def __init__(self, begin: int, length: int) -> None:
-        self._begin, self._length = begin, length
+    def __init__(self, begin: int, length: int, kept: tuple[bool, bool]) -> None:
+        self._begin, self._length, self._kept = begin, length, kept
         self.lefts: list[float] = []
         self.rights: list[float] = []
         self.best: list[float] = []
         self.held: list[float] = []
 
-    def turn(self) -> None:
+    def turn(self, lefts: Sequence[float], rights: Sequence[float]) -> None:
         """Make the running block, which is complete, the one before."""
-        lefts, keep, best = self.lefts[:0:-1], self.best.append, -INF
-        self.held += accumulate(lefts, min)
-        for left, right in zip(lefts, self.rights[:0:-1], strict=True):
+        ends, keep, best = lefts[: -self._length : -1], self.best.append, -INF
+        self.held += accumulate(ends, min)
+        for left, right in zip(ends, rights[: -self._length : -1], strict=True):
             if left < best:
                 best = left
             if right > best:
@@ -100,20 +100,27 @@ class UntilBlock(Remembering):
     def check(self, n: int, newest: int) -> None:
         """Check what values together must obey."""
         super().check(n, newest)
-        blocks, new = divmod(max(0, n - self._begin), self._length)
-        old = self._length - 1 - new if blocks else 0
-        if [len(x) for x in (self.lefts, self.rights, self.best, self.held)] != [new, new, old, old]:
+        new, old = _sizes(n - self._begin, self._length)
+        wanted = [new * self._kept[0], new * self._kept[1], old, old]
+        if [len(x) for x in (self.lefts, self.rights, self.best, self.held)] != wanted:
             raise Unsound("a block has another length")
+
+
+def _sizes(count: int, length: int) -> tuple[int, int]:
+    """Return how many values of the running block there are after `count`, and how many ends of that before."""
+    blocks, new = divmod(max(0, count), length)
+    return new, length - 1 - new if blocks else 0
 
 
 class Flow:
     """Writes the lines that compute operators, each value late by its operator's horizon.
 
-    At sample n the lines of a level run only if n has reached it, those of lower levels before.
+    At sample n the lines of a level run only if n has reached it, those of lower levels before. taped: for variables
+    whose latest values are on the tape what names the column.
     """
 
-    def __init__(self, plan: Plan, front: Front) -> None:
-        self._plan, self._front, self._lines = plan, front, front.lines
+    def __init__(self, plan: Plan, front: Front, taped: Mapping[str, str]) -> None:
+        self._plan, self._front, self._lines, self._taped = plan, front, front.lines, taped
         found = horizons(plan.nodes, plan.base)
         self._horizons = [0 if settled else h for settled, h in zip(plan.settled, found, strict=True)]
         self._levels: dict[int, list[str]] = {0: self._lines.lines}
@@ -214,9 +221,9 @@ class Flow:
         if length == 1 or name in ("INF", "NINF"):
             return name
         lines, sign, neutral = self._lines, "<" if least else ">", INF if least else -INF
-        part = lines.keep(lambda: Block(begin, length, min if least else max))
+        part = lines.keep(lambda: Block(begin, length, min if least else max, name not in self._taped))
         running = lines.remember(neutral)
-        lines.add(f"{lines.call(part, lambda block: block.newer.append)}({name})")
+        values = self._running_block(part, name, lambda block: block.newer)
         lines.add(f"if {name} {sign} {running}:")
         lines.add(f"    {running} = {name}")
         result = lines.let(running)
@@ -226,9 +233,16 @@ class Flow:
         lines.add(f"    if {before} {sign} {result}:")
         lines.add(f"        {result} = {before}")
         lines.add(f"elif n >= {lines.bind(begin + length - 1)}:")
-        lines.add(f"    {lines.call(part, lambda block: block.turn)}()")
+        lines.add(f"    {lines.call(part, lambda block: block.turn)}({values})")
         lines.add(f"    {running} = {lines.number(neutral)}")
         return result
+
+    def _running_block(self, part: int, name: str, list_of: Callable[[Any], list[float]]) -> str:
+        """Name what ends with the values of the running block; write what keeps them if the tape does not."""
+        if name in self._taped:
+            return self._taped[name]
+        self._lines.add(f"{self._lines.call(part, lambda block: list_of(block).append)}({name})")
+        return self._lines.call(part, list_of)
 
     def _until(self, names: Sequence[str], begin: int, low: int, high: int) -> str:
         """Write until over [low, high]: until over the last samples, after the least left value before these."""
@@ -245,10 +259,10 @@ class Flow:
 
     def _until_at_once(self, left: str, right: str, begin: int, length: int) -> str:
         lines = self._lines
-        part = lines.keep(lambda: UntilBlock(begin, length))
+        part = lines.keep(lambda: UntilBlock(begin, length, (left not in self._taped, right not in self._taped)))
         best, held = lines.remember(-INF), lines.remember(INF)
-        lines.add(f"{lines.call(part, lambda block: block.lefts.append)}({left})")
-        lines.add(f"{lines.call(part, lambda block: block.rights.append)}({right})")
+        lefts = self._running_block(part, left, lambda block: block.lefts)
+        rights = self._running_block(part, right, lambda block: block.rights)
         result = lines.let(best)
         reached = f"{result}r"
         lines.add(f"{reached} = {held}")
@@ -267,6 +281,6 @@ class Flow:
         lines.add(f"    if {before} > {result}:")
         lines.add(f"        {result} = {before}")
         lines.add(f"elif n >= {lines.bind(begin + length - 1)}:")
-        lines.add(f"    {lines.call(part, lambda block: block.turn)}()")
+        lines.add(f"    {lines.call(part, lambda block: block.turn)}({lefts}, {rights})")
         lines.add(f"    {best} = NINF; {held} = INF")
         return result

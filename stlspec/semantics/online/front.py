@@ -143,7 +143,9 @@ class Front:
         lines.add("n = clock.n")
         self._read()
         if self.plan.counted:
-            lines.add("T = n if time is None and clock.stamp is None else clock.read(time)")
+            lines.add("T = n")
+            lines.add("if time is not None or clock.stamp is not None:")
+            lines.add("    clock.read(time)")
         else:
             lines.add("T = clock.read(time)")
         lines.add("memory = store.values")
@@ -184,10 +186,13 @@ class Front:
             return
         lines.add(f"if type({variable}) is not float:")
         lines.add(f"    {variable} = {lines.bind(as_real)}({name}, {variable}, n)")
-        low = lines.number(-INF if signal.low is None else signal.low)
-        high = lines.number(INF if signal.high is None else signal.high)
-        # NaN fails both comparisons.
-        lines.add(f"if not {low} <= {variable} <= {high}:")
+        if signal.low is None and signal.high is None:
+            lines.add(f"if {variable} != {variable}:")
+        else:
+            low = lines.number(-INF if signal.low is None else signal.low)
+            high = lines.number(INF if signal.high is None else signal.high)
+            # NaN fails both comparisons.
+            lines.add(f"if not {low} <= {variable} <= {high}:")
         lines.add(f"    {lines.bind(outside)}({lines.bind(signal)}, {variable}, n, clock.now(time))")
 
     def _real(self, index: int, node: Node) -> str:

@@ -7,7 +7,7 @@ with the number of samples unless a formula needs them all. A sample that is ref
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,14 +55,37 @@ class Open:
     current: Floats
 
 
+_UPDATE = """Take the next sample.
+
+Not in the paper: it evaluates complete traces only. The step of Algorithm 2 that looks at a partial trace takes
+`current`.
+
+Args:    sample: a value for each signal that a requirement uses; others are ignored. The number of a state if the
+         monitor was made for `states`.
+         time: its time stamp in the spec's unit; None where samples are counted or periodic.
+Returns: with the reading `start` a mapping from requirements to `Standing`: what is known of their values at
+         sample 0. With `every` a list of `Known`: the values that this sample made known, for each requirement in
+         order of the samples.
+Raises:  DataError: the sample cannot be used; the monitor is as it was before.
+"""
+
+
+class Update(Protocol):
+    """What takes the next sample of a monitor."""
+
+    def __call__(self, sample: Mapping[str, Any] | int, time: float | None = None) -> Any:
+        """Take the next sample: see `Monitor.update`."""
+
+
 class Monitor:
     """Follows one trace. Make one with `make_monitor`; use it from one thread at a time."""
 
-    __slots__ = ("_bundle", "_objects", "_program", "_step")
+    # `update` is the generated function itself: a method around it would take a tenth of its time.
+    __slots__ = {"_bundle": None, "_objects": None, "_program": None, "update": _UPDATE}
 
     def __init__(self, bundle: BundleData, program: Program, objects: Objects) -> None:
         self._bundle, self._program, self._objects = bundle, program, objects
-        self._step = program.bind(objects)
+        self.update: Update = program.bind(objects)
 
     @property
     def reading(self) -> Reading:
@@ -83,22 +106,6 @@ class Monitor:
     def time(self) -> float:
         """Time of the newest sample in the spec's unit, as given if it was given."""
         return self._objects.clock.latest
-
-    def update(self, sample: Mapping[str, Any] | int, time: float | None = None) -> Any:
-        """Take the next sample.
-
-        Not in the paper: it evaluates complete traces only. The step of Algorithm 2 that looks at a partial
-        trace takes `current`.
-
-        Args:    sample: a value for each signal that a requirement uses; others are ignored. The number of a
-                 state if the monitor was made for `states`.
-                 time: its time stamp in the spec's unit; None where samples are counted or periodic.
-        Returns: with the reading `start` a mapping from requirements to `Standing`: what is known of their
-                 values at sample 0. With `every` a list of `Known`: the values that this sample made known,
-                 for each requirement in order of the samples.
-        Raises:  DataError: the sample cannot be used; the monitor is as it was before.
-        """
-        return self._step(sample, time)
 
     def pending(self) -> Mapping[str, Open]:
         """Return, for each requirement, enclosures at the samples at which it is not known yet.
@@ -189,7 +196,7 @@ class Monitor:
             wanted = len(bundle.requirements) if reading == "start" and monitor.n_samples else 0
             if len(monitor._objects.clock.ends()) != wanted:
                 raise Unsound("it has another number of requirements")
-            monitor._step = monitor._program.bind(monitor._objects)
+            monitor.update = monitor._program.bind(monitor._objects)
         except Unsound as error:
             refuse("D893", problem=str(error))
         return monitor

@@ -119,10 +119,10 @@ def _standing(lines: Lines, low: str, high: str, current: str) -> str:
 
 
 def compiled(plan: Plan, lines: Lines, opening: int = -1) -> Program:
-    """Compile the lines to a function `step(sample, time)` over a clock, a store and the parts."""
+    """Compile the lines to a function `update(sample, time=None)` over a clock, a store and the parts."""
     parts = "".join(f", o{i}" for i in range(len(lines.calls)))
     body = "".join(f"        {line}\n" for line in lines.lines)
-    text = f"def build(clock, store{parts}):\n    def step(sample, time):\n{body}    return step\n"
+    text = f"def build(clock, store{parts}):\n    def update(sample, time=None):\n{body}    return update\n"
     scope: dict[str, Any] = dict(lines.bound)
     exec(compile(text, "<monitor>", "exec"), scope)  # noqa: S102 - no word of it comes from the spec: see `front`
     return Program(plan, scope["build"], tuple(lines.initial), tuple(lines.parts), tuple(lines.calls), opening)

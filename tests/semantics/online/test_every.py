@@ -5,7 +5,6 @@ import pytest
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
 from stlspec.semantics.online.every import Counted, Known, Network, every_program
-from stlspec.semantics.online.opening import deferred
 from stlspec.semantics.online.plan import make_plan
 from tests.semantics.online.cases import PERIOD, STEP, bundle_of
 
@@ -49,8 +48,3 @@ def test_operators_are_shared():
         "Counted",
         "Block",
     ]
-
-
-def test_what_looks_ahead_without_end_is_deferred():
-    spec = bundle()
-    assert deferred(spec, make_plan(spec)) == ("d",)

@@ -96,7 +96,9 @@ def test_a_value_that_is_passed_on_is_not_mistaken_for_a_later_one():
     assert [k.robustness for some in [*told, rest] for k in some] == evaluate(spec, data)["r"].signal.tolist()
 
 
-@pytest.mark.parametrize("make", [lambda: Block(2, 4, min), lambda: UntilBlock(2, 4), lambda: Delay(2, 4)])
+@pytest.mark.parametrize(
+    "make", [lambda: Block(2, 4, min, True), lambda: UntilBlock(2, 4, (True, True)), lambda: Delay(2, 4)]
+)
 @pytest.mark.parametrize("n", [0, 2, 3, 5, 6, 8, 11])
 def test_a_saved_block_of_another_length_is_refused(make, n):
     part = make()

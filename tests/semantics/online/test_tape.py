@@ -7,7 +7,7 @@ from stlspec.compiler.ir import Builder
 from stlspec.semantics.online.arrays import needed
 from stlspec.semantics.online.plan import make_plan
 from stlspec.semantics.online.saving import Unsound
-from stlspec.semantics.online.tape import Tape, reach_back
+from stlspec.semantics.online.tape import CountedTape, Tape, reach_back
 from tests.semantics.online.cases import STAMPS, STEP, bundle_of
 
 
@@ -55,6 +55,30 @@ def test_columns_of_unequal_length_are_refused():
     with pytest.raises(Unsound):
         tape.load(state)
         tape.check(3, 4)
+
+
+def counted(count):
+    tape = CountedTape(2)
+    for i in range(count):
+        tape.columns[0].append(float(i))
+        tape.columns[1].append(-float(i))
+    return tape
+
+
+def test_a_counted_tape_needs_no_times():
+    tape = counted(400)
+    assert [tape.needed(50, reach) for reach in (0, 1, 60, None)] == [50, 49, 0, 0]
+    assert tape.needed(400, 0) == 399
+    tape.drop(300, 10)
+    assert (tape.base, len(tape)) == (290, 110)
+    tape.drop(390, None)
+    assert tape.base == 290
+    times, columns = tape.arrays(398)
+    assert (times.tolist(), columns[0].tolist(), columns[1].tolist()) == ([398, 399], [398.0, 399.0], [-398.0, -399.0])
+    state = tape.save()
+    tape.load(state | {"columns": [[1.0], []]})
+    with pytest.raises(Unsound):
+        tape.check(400, 399)
 
 
 @pytest.mark.parametrize(
