@@ -23,6 +23,9 @@ LATE = {
     "gymnasium": {"readers/minari.py"},
     "h5py": {"readers/minari.py"},
     "PIL": {"readers/minari.py"},
+    "imitation": {"paper/mce_irl.py"},
+    "seals": {"paper/mce_irl.py"},
+    "torch": {"paper/mce_irl.py"},
 }
 """Third-party packages that may be imported inside functions, and where."""
 MODULES = sorted(PACKAGE.rglob("*.py"))
