@@ -48,13 +48,13 @@ _ABSENT = "its libraries are not installed: python -m stlspec.paper.libraries"
 class IrlResult:
     """What MCE-IRL took and found.
 
-    skipped: why there is no measurement; then there is no time and no reward, and all other numbers are 0. iterations: the
-    budget, gradient steps. steps: those that were taken. seconds: for the budget, or up to convergence; extrapolated:
-    steps times the median step, not measured whole. step_seconds: median of a gradient step. gradient: l2 norm
-    at the end. gap: the largest difference between the state visits of the demonstrations and those of the
-    policy. converged: whether one of imitation's criteria was met (gap 1e-3, gradient 1e-4). reward: (n_states,),
-    no unit; None where training was not done to the end. horizon, n_states, demonstrations: of the task. sparse:
-    transitions in sparse form. note: one sentence for a report. versions: of the libraries.
+    skipped: why there is no measurement; then there is no time and no reward, and all other numbers are 0.
+    iterations: the budget, gradient steps. steps: those that were taken. seconds: for the budget, or up to
+    convergence; extrapolated: steps times the median step, not measured whole. step_seconds: median of a gradient
+    step. gradient: l2 norm at the end. gap: the largest difference between the state visits of the demonstrations
+    and those of the policy. converged: whether one of imitation's criteria was met (gap 1e-3, gradient 1e-4).
+    reward: (n_states,), no unit; None where training was not done to the end. horizon, n_states, demonstrations: of
+    the task. sparse: transitions in sparse form. note: one sentence for a report. versions: of the libraries.
     """
 
     skipped: str | None
