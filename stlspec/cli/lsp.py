@@ -5,7 +5,7 @@ In: messages of the protocol on stdin. Out: messages on stdout, and nothing else
 
 import os
 import sys
-from typing import Annotated
+from typing import Annotated, BinaryIO
 
 import typer
 
@@ -25,10 +25,7 @@ def lsp(
     assert stdio
     if sys.stdin.isatty():
         print("this is for an editor to start: it waits for messages on stdin; Ctrl-C ends it", file=sys.stderr)
-    # What a library may print is no message: stdout becomes stderr for everyone else.
-    sys.stdout.flush()
-    with os.fdopen(os.dup(1), "wb") as out:
-        os.dup2(2, 1)
+    with _stdout_apart() as out:
 
         def write(data: bytes) -> None:
             out.write(data)
@@ -36,3 +33,13 @@ def lsp(
 
         code = serve(lambda most: os.read(0, most), write)
     raise typer.Exit(code)
+
+
+def _stdout_apart() -> BinaryIO:
+    """Return what stdout was; it is stderr from now on, since what a library may print is no message."""
+    sys.stdout.flush()
+    if sys.stderr is None:  # closed by whoever started this: its number must not be given to another stream
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    return out

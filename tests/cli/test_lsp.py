@@ -33,3 +33,11 @@ def test_without_the_extra_one_diagnostic_says_how_to_install_it():
     assert result.stdout == b""
     assert b"D847" in result.stderr
     assert b"pip install 'stlspec[lsp]'" in result.stderr
+
+
+def test_a_closed_stderr_is_no_obstacle():
+    script = f"exec {sys.executable} -m stlspec lsp 2>&-"
+    message = b"Content-Length: %d\r\n\r\n%b" % (len(INITIALIZE), INITIALIZE)
+    result = subprocess.run(["sh", "-c", script], input=message, stdout=subprocess.PIPE, check=False)
+    assert result.stdout.startswith(b"Content-Length: ")
+    assert result.stdout.count(b"Content-Length: ") == 1

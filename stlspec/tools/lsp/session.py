@@ -77,7 +77,10 @@ class _Session:
                 message = self._inbox.get(max(0.0, self._due() - time.monotonic()) if self._pending else None)
             except queue.Empty:
                 continue
-            if message is END or (isinstance(message, dict) and message.get("method") == "exit"):
+            if message is END:
+                log("the editor has gone without `exit`")
+                break
+            if isinstance(message, dict) and message.get("method") == "exit":
                 break
             self._handle(message)
             self._note_change()

@@ -182,9 +182,14 @@ class Workspace:
     def _open_at(self, key: str) -> Document | None:
         return next((d for d in self._documents.values() if d.is_file and identity(d.name) == key), None)
 
+    def _open_as(self, name: str) -> Document | None:
+        """Return the buffer of a file by a name of it: often the very one that the buffer has."""
+        same = next((d for d in self._documents.values() if d.name == name), None)
+        return same or self._open_at(identity(name))
+
     def location(self, source: SourceText, span: Span) -> Location:
         """Return where a stretch of a text is in the editor."""
-        document = self._documents.get(source.name) or self._open_at(identity(source.name))
+        document = self._open_as(source.name)
         if document is not None and document.source is not None and document.source.text == source.text:
             return Location(document.uri, *document.places(span))
         if source.name not in self._lines or self._lines[source.name].text != source.text:
@@ -194,7 +199,7 @@ class Workspace:
 
     def uri(self, name: str) -> str:
         """Return the URI of a file, as the editor names it if it is open."""
-        document = self._documents.get(name) or self._open_at(identity(name))
+        document = self._open_as(name)
         return document.uri if document is not None else uri_of(name)
 
     def findings(self) -> dict[str, tuple[Diagnostic, ...]]:

@@ -172,10 +172,11 @@ HOVER = {
 }
 
 
-def test_an_editor_that_goes_without_a_word_ends_the_server():
+def test_an_editor_that_goes_without_a_word_ends_the_server(capfd):
     pair = Pair()
     pair.send(INITIALIZE)
     assert pair.end() == 1
+    assert "without `exit`" in capfd.readouterr().err
 
 
 def test_an_editor_that_no_longer_reads_ends_the_server(capfd):
