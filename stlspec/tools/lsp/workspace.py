@@ -16,8 +16,9 @@ from stlspec.compiler.model import Model
 from stlspec.compiler.review import review_syntax
 from stlspec.compiler.selection import Selection, configured
 from stlspec.errors import Diagnostic, InputError
-from stlspec.lang.parse import Syntax, parse
-from stlspec.lang.using import Parser, identity, parse_with_uses
+from stlspec.lang.incremental import Incremental
+from stlspec.lang.parse import Syntax
+from stlspec.lang.using import identity, parse_with_uses
 from stlspec.source import SourceText, Span
 from stlspec.tools.lsp.documents import Change, Document, uri_of
 from stlspec.tools.lsp.folders import specs_under
@@ -68,12 +69,26 @@ class Reviewed:
         return any(found.severity == "error" for found in self.diagnostics)
 
 
+class _Parsers:
+    """A parser for each file, which remembers what it has read."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Incremental] = {}
+
+    def __call__(self, source: SourceText, names: frozenset[str]) -> Syntax:
+        return self._known.setdefault(source.name, Incremental()).parse(source, names)
+
+    def keep(self, names: set[str]) -> None:
+        """Forget all files but these."""
+        self._known = {name: parser for name, parser in self._known.items() if name in names}
+
+
 class Workspace:
     """The open buffers, by URI."""
 
-    def __init__(self, encoding: Encoding = DEFAULT, parsed: Parser = parse) -> None:
+    def __init__(self, encoding: Encoding = DEFAULT) -> None:
         self.encoding = encoding
-        self._parse = parsed
+        self._parse = _Parsers()
         self._documents: dict[str, Document] = {}
         self._reviewed: dict[str, Reviewed] = {}
         self._lines: dict[str, Lines] = {}
@@ -98,6 +113,9 @@ class Workspace:
         """Forget a buffer: what the others use is the file on disk again."""
         document = self._documents.pop(uri, None)
         if document is not None:
+            read = [self._reviewed[uri].syntax for uri in self._documents.keys() & self._reviewed.keys()]
+            used = {file.source.name for syntax in read if syntax is not None for file in syntax.used}
+            self._parse.keep(used | {other.name for other in self._documents.values()})
             self._forget(document)
 
     def refresh(self) -> None:

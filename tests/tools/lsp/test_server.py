@@ -7,6 +7,7 @@ import random
 import pytest
 
 from stlspec.errors import InputError
+from stlspec.lang.incremental import Incremental
 from stlspec.tools.lsp.completion import completion
 from stlspec.tools.lsp.edits import actions, formatting
 from stlspec.tools.lsp.hover import hover
@@ -14,6 +15,7 @@ from stlspec.tools.lsp.navigation import definition, references
 from stlspec.tools.lsp.outline import outline
 from stlspec.tools.lsp.renaming import rename
 from stlspec.tools.lsp.workspace import Workspace
+from tests.benchmarks.parsing import spec_of
 from tests.lang.mutate import SPECS, mutate, statements
 from tests.lang.soup import soup
 from tests.tools.lsp.client import Client, RefusedError, applied, shape
@@ -265,6 +267,34 @@ def test_fifty_random_edits_end_where_a_fresh_start_does(client, tmp_path):
     assert found[0] == found[1]
     for one in (uri, fresh):
         client.close(one)
+
+
+def test_an_edit_of_a_long_spec_reads_only_the_statement_that_it_touches(tmp_path, monkeypatch):
+    work = []
+    read = Incremental.parse
+
+    def parse(self, source, names=frozenset()):
+        syntax = read(self, source, names)
+        work.append((self.work.lexed, self.work.parsed, len(syntax.statements)))
+        return syntax
+
+    monkeypatch.setattr(Incremental, "parse", parse)
+    client = Client(inside=True)
+    uri = (tmp_path / "long.stl").as_uri()
+    text = spec_of(1000)
+    client.open(uri, text)
+    before = client.diagnostics(uri)
+    (first,) = work
+    assert first[0] >= first[2] > 300
+    work.clear()
+    for word in ("let", "soft"):
+        line = next(i for i, written in enumerate(text.split("\n")) if i > 500 and written.startswith(word))
+        client.change(uri, ((line, len(word)), (line, len(word)), " "))
+        assert shape(client.diagnostics(uri)) == shape(before)
+    client.change(uri, ((line, len(word)), (line, len(word)), " ("))
+    assert [at for code, at in shape(client.diagnostics(uri)) if code.startswith("S")] == [line]
+    assert [made[:2] for made in work] == [(1, 1)] * 3
+    assert client.stop() == 0
 
 
 def test_no_text_and_no_place_makes_a_feature_fail():

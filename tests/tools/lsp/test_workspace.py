@@ -2,6 +2,7 @@
 
 import pytest
 
+from stlspec.lang.incremental import Incremental
 from stlspec.tools.lsp import workspace
 from stlspec.tools.lsp.documents import Change, uri_of
 from stlspec.tools.lsp.positions import Place
@@ -123,6 +124,46 @@ def test_what_is_not_open_is_not_known():
     space.close("file:///a.stl")
     assert space.reviewed("file:///a.stl") is None
     assert space.documents == ()
+
+
+@pytest.fixture
+def work(monkeypatch):
+    """What parsers lexed and parsed since this list was last emptied: a pair for each text read."""
+    found = []
+    read = Incremental.parse
+
+    def parse(self, source, names=frozenset()):
+        syntax = read(self, source, names)
+        found.append((self.work.lexed, self.work.parsed))
+        return syntax
+
+    monkeypatch.setattr(Incremental, "parse", parse)
+    return found
+
+
+def test_a_file_that_did_not_change_is_not_read_again_where_it_is_used(here, work):
+    space = Workspace()
+    main, signals = (uri_of(str(here / name)) for name in ("main.stl", "signals.stl"))
+    space.open(main, 1, MAIN)
+    space.open(signals, 1, SIGNALS)
+    assert codes(space, main) == []
+    work.clear()
+    space.change(main, 2, [Change(" ", Place(1, 12), Place(1, 12))])
+    assert codes(space, main) == []
+    assert sum(lexed for lexed, _ in work) == 1
+
+
+def test_what_is_no_longer_open_or_used_is_forgotten(here):
+    space = Workspace()
+    main, other = (uri_of(str(here / name)) for name in ("main.stl", "other.stl"))
+    space.open(main, 1, MAIN)
+    space.open(other, 1, SIGNALS)
+    space.findings()
+    assert len(space._parse._known) == 3
+    space.close(other)
+    assert {name.rsplit("/", 1)[1] for name in space._parse._known} == {"main.stl", "signals.stl"}
+    space.close(main)
+    assert space._parse._known == {}
 
 
 def test_the_checks_are_run_when_they_are_asked_for_and_once(here, monkeypatch):
