@@ -83,12 +83,12 @@ def prepare(out: Path) -> None:
 
 
 def measure(experiment: Experiment, budget: Budget, out: Path, *, jobs: int, fresh: bool) -> journal.Record:
-    """Run an experiment and keep its result, unless it is kept already.
+    """Run an experiment and keep its result, unless it is kept already and nothing in it was skipped.
 
     Args: fresh: run it in any case.
     """
     known = None if fresh else journal.load(out, experiment.name, budget.to_json())
-    if known is not None:
+    if known is not None and not (known.result.get("irl") or {}).get("skipped"):
         say(f"{experiment.name}: kept from before, {short(known.seconds)} s")
         return known
     say(f"{experiment.name}: {experiment.title}")

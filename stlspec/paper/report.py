@@ -5,6 +5,7 @@ out; verdicts come from `claims`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from stlspec.paper import tables
 from stlspec.paper.claims import CLAIMS, Results, Verdict, judge, rows_of
@@ -132,12 +133,16 @@ def _table_1_notes(results: Results) -> str:
         "Times of the STL reward are those of the inference alone; a fresh process that reads spec, map and "
         f"demonstrations and infers the reward takes: {cold}. The paper does not say what its times include.",
     ]
-    lines += [
-        f"MCE-IRL on {name}: {r['irl']['note']}." for name, r in measured.items() if (r.get("irl") or {}).get("note")
-    ]
-    if any((r.get("irl") or {}).get("extrapolated") for r in measured.values()):
+    lines.append("\n".join(f"- MCE-IRL on {name}: {_irl_note(r['irl'])}." for name, r in measured.items()))
+    if any(r["irl"]["extrapolated"] for r in measured.values()):
         lines.append("\\* a few gradient steps were timed and extrapolated to the whole budget.")
     return "\n\n".join(lines)
+
+
+def _irl_note(irl: Mapping[str, Any]) -> str:
+    if irl["skipped"]:
+        return f"not measured: {irl['skipped']}"
+    return f"{irl['note']}; budget {irl['iterations']} gradient steps, horizon {irl['horizon']}"
 
 
 def _sorted(figures: Sequence[str]) -> Iterable[tuple[str, list[str]]]:

@@ -58,7 +58,8 @@ def _table_1_rows(name: str, result: Mapping[str, Any]) -> list[list[str]]:
             seconds(printed.seconds), seconds(mine), _ratio(mine, printed.seconds), "", "",
         ],
         [
-            "", "MCE-IRL", printed.irl_demos, _count(irl.get("demonstrations")), bound + seconds(printed.irl_seconds),
+            "", "MCE-IRL", printed.irl_demos, _count(irl.get("demonstrations") or None),
+            bound + seconds(printed.irl_seconds),
             seconds(theirs) + mark, _ratio(theirs, printed.irl_seconds),
             bound + _ratio(printed.irl_seconds, printed.seconds), _ratio(theirs, mine),
         ],

@@ -14,7 +14,7 @@ ROW = Row(
     to_success=200, episodes_to_success=25, violations=4, prefilled=1, farming=False, goals=0.9, seconds=0.5,
     curve=(10.0, 8.0),
 )  # fmt: skip
-TINY = Budget("tiny", 2, ((50, 1), (75, 1), (100, 1)), 2, 20, 3, 1.0, 3)
+TINY = Budget("tiny", 2, ((50, 1), (75, 1), (100, 1)), 2, 20, 3, 3, 1.0)
 
 
 def rows(*to_success, **fields):
@@ -39,12 +39,12 @@ TABLE_1 = {
         "demonstrations": 3, "samples": 27, "states": 25, "seconds": 0.002, "valued": 16, "cold": 0.9,
         "correlation": 0.5,
     },
-    "irl": None,
+    "irl": {"skipped": "there is no network", "seconds": None, "extrapolated": False, "reward": None},
     "truth": [1.0] * 25,
 }  # fmt: skip
 IRL = {
     "demonstrations": 70, "seconds": 4.0, "extrapolated": False, "note": "converged after 10 gradient steps",
-    "reward": [0.0] * 25, "correlation": -0.25, "skipped": None,
+    "reward": [0.0] * 25, "correlation": -0.25, "skipped": None, "iterations": 1000, "horizon": 16,
 }  # fmt: skip
 
 

@@ -128,6 +128,20 @@ def test_time_is_judged_on_every_row_and_missing_rows_count_against_it(made):
     assert "grid-5: 2 000 times faster" in judge(BY_NAME["time"], {"table-1-grid-5": faster}).evidence
 
 
+def test_why_a_row_is_missing_stands_in_the_evidence(made):
+    evidence = judge(BY_NAME["time"], {"table-1-grid-5": made.table_1}).evidence
+    assert evidence == "MCE-IRL was not measured on grid-5: there is no network"
+
+
+def test_the_ground_truth_is_judged_by_correlation(made):
+    nearer = dict(made.table_1, irl=made.irl)
+    farther = dict(made.table_1, irl=dict(made.irl, correlation=0.6))
+    assert verdict("truth", {"table-1-grid-5": nearer, "table-1-grid-7": nearer}) is YES
+    assert verdict("truth", {"table-1-grid-5": nearer, "table-1-grid-7": farther}) is PARTLY
+    assert verdict("truth", {"table-1-grid-5": farther, "table-1-grid-7": farther}) is NO
+    assert verdict("truth", {"table-1-grid-5": nearer, "table-1-grid-7": made.table_1}) is UNKNOWN
+
+
 def test_dimension_is_judged_by_time_for_each_sample():
     def results(large):
         times = {"5": {"seconds": 1e-3, "samples": 10}, "80": {"seconds": large, "samples": 100}}

@@ -76,6 +76,19 @@ def test_a_stopped_reproduction_goes_on_after_the_last_finished_experiment(tmp_p
     assert (tmp_path / "report.md").read_text().startswith("# Learning from Demonstrations")
 
 
+def test_what_lacked_its_libraries_is_measured_again(tmp_path, counted, monkeypatch):
+    def skips(budget, jobs, progress):
+        counted["one"] += 1
+        return {"irl": {"skipped": "no libraries" if counted["one"] == 1 else None}}
+
+    monkeypatch.setitem(command.EXPERIMENTS, "one", Experiment("one", "skips once", skips))
+    experiment = command.EXPERIMENTS["one"]
+    command.prepare(tmp_path)
+    for _ in range(3):
+        command.measure(experiment, command.QUICK, tmp_path, jobs=1, fresh=False)
+    assert counted["one"] == 2
+
+
 def test_results_of_another_budget_are_measured_again(tmp_path, counted):
     command.run(options(tmp_path, "one"))
     command.run(options(tmp_path, "one", quick=False))
@@ -99,7 +112,8 @@ def test_a_folder_that_cannot_be_made_is_a_diagnostic(tmp_path):
     assert caught.value.diagnostics[0].code == "S092"
 
 
-def test_the_smallest_experiment_prints_tables_and_writes_the_report(tmp_path, capsys):
+def test_the_smallest_experiment_prints_tables_and_writes_the_report(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "none"))
     command.run(options(tmp_path, "table-1-lake-4"))
     out, err = capsys.readouterr()
     assert "Claims of the paper" in out
@@ -109,7 +123,8 @@ def test_the_smallest_experiment_prints_tables_and_writes_the_report(tmp_path, c
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="the system has no kill -9")
-def test_a_killed_reproduction_keeps_what_was_finished(tmp_path):
+def test_a_killed_reproduction_keeps_what_was_finished(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "none"))
     words = [sys.executable, "-m", "stlspec.paper", "--quick", "--no-figures", "--jobs", "1", "--out", str(tmp_path)]
     words += ["--only", "table-1-lake-4", "--only", "letter"]
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -119,8 +134,9 @@ def test_a_killed_reproduction_keeps_what_was_finished(tmp_path):
         time.sleep(0.05)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
-    before = first.stat().st_mtime_ns
     assert [p.name for p in (tmp_path / "results").iterdir()] == ["table-1-lake-4.json"]
+    first.write_text(first.read_text().replace('"skipped": "', '"skipped": null, "why": "'))
+    before = first.stat().st_mtime_ns
     done = subprocess.run([*words[:-4], "--only", "table-1-lake-4"], capture_output=True, text=True, check=True)
     assert "kept from before" in done.stderr
     assert first.stat().st_mtime_ns == before

@@ -4,6 +4,7 @@ import pytest
 
 from stlspec.paper.cases import TABLE_1, case_of
 from stlspec.paper.experiments import EXPERIMENTS, OPTIONS, rows_from_json, rows_to_json, unseen
+from stlspec.paper.irl import IrlResult
 from stlspec.paper.maps import cells
 
 
@@ -48,11 +49,27 @@ def test_demonstrations_are_scored_for_every_seed_and_size(made):
 
 
 @pytest.mark.parametrize(("name", "has_truth"), [("grid-5", True), ("lake-4", False)])
-def test_a_row_of_table_1_has_times_and_where_there_is_one_the_ground_truth(made, name, has_truth):
+def test_a_row_of_table_1_has_times_and_where_there_is_one_the_ground_truth(made, name, has_truth, monkeypatch):
+    asked = []
+
+    def answer(case, experts, *, iterations, seconds):
+        asked.append((case.name, len(experts), iterations, seconds))
+        return IrlResult(None, 3, 3, 0.5, reward=tuple(map(float, range(25))), demonstrations=len(experts))
+
+    monkeypatch.setattr("stlspec.paper.experiments.measure", answer)
     found = run(f"table-1-{name}", made)
     assert 0 < found["ours"]["seconds"] < found["ours"]["cold"]
     assert (found["truth"] is not None) is has_truth
-    assert ("correlation" in found["ours"]) is has_truth
+    assert ("correlation" in found["ours"]) is has_truth is ("correlation" in found["irl"])
+    assert asked == [(name, {"grid-5": 70, "lake-4": 150}[name], 3, 1.0)]
+    assert found["irl"]["seconds"] == 0.5
+
+
+def test_without_the_libraries_of_the_baseline_a_row_says_what_is_missing(made, monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    found = run("table-1-grid-5", made)
+    assert found["irl"]["seconds"] is found["irl"]["reward"] is found["irl"]["correlation"] is None
+    assert "stlspec.paper.libraries" in found["irl"]["skipped"]
 
 
 @pytest.mark.parametrize("name", ["lake-4", "lake-8"])

@@ -41,7 +41,13 @@ def test_sections_are_those_of_what_was_run(made):
         "## Claims of the paper", "## Table 1: time to infer the reward",
         "## How near the rewards come to the ground truth", "## Single-goal grids", "## What is done differently",
     ]  # fmt: skip
-    assert "MCE-IRL on grid-5: converged after 10 gradient steps." in text
+    assert "- MCE-IRL on grid-5: converged after 10 gradient steps; budget 1000 gradient steps, horizon 16." in text
+
+
+def test_what_could_not_be_measured_says_why(made):
+    text = report.write({"table-1-lake-4": made.record("table-1-lake-4", made.table_1)})
+    assert "- MCE-IRL on lake-4: not measured: there is no network." in text
+    assert "faster than MCE-IRL on every row of Table 1.** Not measured." in text
 
 
 def test_figures_are_shown_under_their_headings(made):
