@@ -143,40 +143,71 @@ def batch(arena, data):
     return section
 
 
+SIZES = (10**4, 10**5, 10**6, 10**7)
+WIDTHS = (10, 100, 1000, 10_000)
+
+
 def passes(arena, data):
-    """One always in passes over memory: n from 1e4 to 1e7, w from 10 to 10,000."""
-    section = Section("always[0, w], one trace, in passes of np.minimum over the same n")
-    sizes = (10**4, 10**5, 10**6) if arena.quick else (10**4, 10**5, 10**6, 10**7)
-    seconds = {}
-    for n in sizes:
-        taken, counted = _in_passes(arena, data, n, 1000, section)
-        seconds[n] = taken * n
-        if n == 10**6:
-            section.goals.append(counted)
-    large = [n for n in sizes if n >= 10**5]
-    slope = np.polyfit(np.log([float(n) for n in large]), np.log([seconds[n] for n in large]), 1)[0]
-    section.notes.append(f"time grows with n to the power of {slope:.2f} (from n = 1e5 on)")
-    widths = {w: _in_passes(arena, data, 10**6, w, section)[0] for w in (10, 100, 10_000)}
-    widths[1000] = seconds[10**6] / 10**6
-    spread = max(widths.values()) / min(widths.values())
-    section.goals.append(Goal("slowest over fastest w, 10 to 10,000, n = 1e6", spread, 4, at_least=False))
-    return section
+    """One always and one until in passes over memory: n from 1e4 to 1e7, w from 10 to 10,000."""
+    sizes = SIZES[:-1] if arena.quick else SIZES
+    sections = []
+    for name, formula in (("always", lambda w: ["G", [0, w], P]), ("until", lambda w: ["U", [0, w], P, Q])):
+        section = Section(f"{name}[0, w], one trace, in passes of np.minimum over the same n")
+        by_size = {n: _in_passes(arena, data, n, 1000, formula, section) for n in sizes}
+        by_width = {w: _in_passes(arena, data, 10**6, w, formula, section) for w in WIDTHS if w != 1000}
+        by_width[1000] = by_size[10**6]
+        if name == "always":
+            own, one = by_size[10**6]
+            section.goals.append(_ratio_goal("passes at n = 1e+06, w = 1000", own, one, 8))
+        section.goals.append(
+            Goal("exponent in n of the number of passes, w = 1000", exponent(by_size), 0.1, at_least=False)
+        )
+        slowest, fastest = (pick((own for own, _ in by_width.values()), key=_median) for pick in (max, min))
+        section.goals.append(_ratio_goal("slowest over fastest w, 10 to 10,000, n = 1e6", slowest, fastest, 4))
+        section.goals.append(_operations(arena, data, formula, section))
+        sections.append(section)
+    return sections
 
 
-def _in_passes(arena, data, n, w, section):
-    """Add a row; return seconds a sample and the goal for the number of passes."""
+def exponent(by_size):
+    """Return p of the least squares fit of passes = c * n ** p, given {n: (own figure, figure of one pass)}."""
+    counted = [own.median / one.median for own, one in by_size.values()]
+    return float(np.polyfit(np.log([float(n) for n in by_size]), np.log(counted), 1)[0])
+
+
+def _median(figure):
+    return figure.median
+
+
+def _ratio_goal(text, figure, other, bound):
+    """Return the goal that a figure is at most `bound` times another."""
+    ratio, least, most = figure.median / other.median, figure.least / other.most, figure.most / other.least
+    return Goal(text, ratio, bound, False, least, most)
+
+
+def _in_passes(arena, data, n, w, formula, section):
+    """Add a row; return the figures of an evaluation and of one pass."""
     figures = arena.contest(
         {
-            "evaluate": data.job("stlspec", "trace", [["G", [0, w], P]], data.long, n),
+            "evaluate": data.job("stlspec", "trace", [formula(w)], data.long, n),
             "pass": data.job("stlspec", "minimum", [], data.long, n),
         }
     )
     own, one = figures["evaluate"], figures["pass"]
-    counted = own.median / one.median
-    note = f"{counted:.1f} passes (a pass: {1e-6 / one.median:.4g} M samples/s)"
+    note = f"{own.median / one.median:.1f} passes (a pass: {1e-6 / one.median:.4g} M samples/s)"
     section.rows.append(Row(f"n = {n:.0e}, w = {w}", own, note=note))
-    text = f"passes at n = {n:.0e}, w = {w}"
-    return own.median, Goal(text, counted, 8, False, own.least / one.most, own.most / one.least)
+    return own, one
+
+
+def _operations(arena, data, formula, section):
+    """Note how many operations of numpy on single elements an evaluation makes; return the goal on their spread."""
+    n, counted = 10**6, {}
+    for w in WIDTHS:
+        (counted[w],) = arena.values(*data.job("stlspec", "operations", [formula(w)], data.long, n))
+    shown = ", ".join(f"{count:.1f} (w = {w})" for w, count in counted.items())
+    section.notes.append(f"element operations of ufuncs a sample, n = 1e6: {shown}")
+    spread = max(counted.values()) / min(counted.values())
+    return Goal("most over fewest element operations, w = 10 to 10,000, n = 1e6", spread, 4, at_least=False)
 
 
 def memory(arena, data):
@@ -184,5 +215,6 @@ def memory(arena, data):
     n = 10**6
     section = Section("peak memory of one call, 8 requirements, n = 1e6, in arrays of n doubles")
     peak, kept = arena.values(*data.job("stlspec", "memory", EIGHT, data.long, n))
-    section.notes = [f"peak {peak:.1f}, of which {kept:.1f} are in the result (8 of them the values at every sample)"]
+    section.notes = [f"of which {kept:.1f} are in the result (8 of them the values at every sample)"]
+    section.goals = [Goal("arrays at the peak, first call of the process", peak, 12, at_least=False)]
     return section

@@ -21,6 +21,11 @@ def test_a_missing_peer_leaves_the_goal_open():
     assert offline.ratio(FIGURES, "none") is None
 
 
+def test_the_exponent_is_that_of_passes_not_of_seconds():
+    figures = {n: (Figure(3 * n**1.25), Figure(float(n))) for n in (10, 100, 1000)}
+    assert offline.exponent(figures) == pytest.approx(0.25)
+
+
 def test_other_values_are_marked():
     notes = offline.agreement(FIGURES)
     assert notes["stlspec"] == ""
@@ -36,7 +41,7 @@ class FakeArena:
         return {label: Figure(1e-8, 1e-8, 1e-8, (1.0,)) for label in jobs}
 
     def values(self, tool, job):
-        return [14.0, 11.0]
+        return [7.0] if job["kind"] == "operations" else [14.0, 11.0]
 
 
 class FakeData:

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from stlspec.semantics import scans, windows
 from stlspec.semantics.windows import Grid
+from tests.counting import counting
 
 INF = np.inf
 INTERVALS = [(0, 0), (0, 1), (0, 3), (2, 5), (3, None), (0, None), (7, 7), (5, 400), (900, 2000), (10**15, None)]
@@ -173,3 +174,17 @@ def test_times_near_the_limit_of_int64_do_not_overflow():
     assert windows.eventually(values, grid, (0, 2**62)).tolist() == [3, 3, 3]
     assert windows.eventually(values, grid, (2**62 - 1, 2**63)).tolist() == [3, -INF, -INF]
     assert windows.always(values, grid, (10**30, None)).tolist() == [INF, INF, INF]
+
+
+@pytest.mark.parametrize("operator", [windows.always, windows.once, windows.until, windows.since])
+@pytest.mark.parametrize("make_grid", [even, uneven])
+def test_the_work_grows_little_with_the_window_and_not_with_the_trace(operator, make_grid):
+    work = {}
+    for n in (20_000, 100_000):
+        operands = np.random.default_rng(0).standard_normal((2 if operator in (windows.until, windows.since) else 1, n))
+        for width in (10, 100, 1000, 10_000):
+            with counting(scans, windows) as counter:
+                operator(*operands, make_grid(n), (0, width))
+            work[n, width] = counter.operations / n
+    assert max(work.values()) <= 4 * min(work.values())
+    assert work[100_000, 1000] <= 1.2 * work[20_000, 1000]

@@ -12,7 +12,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 from serving import Ready, rows_of, serve
 
 import stlspec
+from stlspec.semantics import expressions, robustness, scans, windows
 from stlspec.semantics.online.monitor import make_monitor
+from tests.counting import counting
 
 
 def bundle_of(job):
@@ -73,6 +75,19 @@ def memory(job):
     return Ready(lambda: None, 1.0, peak)
 
 
+def operations(job):
+    """Not a timing: how many operations of ufuncs on single elements one call makes, a sample."""
+    bundle, names = bundle_of(job)
+    arrays = arrays_of(job)
+
+    def count():
+        with counting(expressions, robustness, scans, windows) as counter:
+            bundle.evaluate({name: arrays[name] for name in names})
+        return [counter.operations / job["n"]]
+
+    return Ready(lambda: None, 1.0, count)
+
+
 def samples_of(job, names):
     rows = rows_of(job)
     return itertools.cycle([{name: rows[name][i] for name in names} for i in range(job["n"])])
@@ -105,6 +120,7 @@ serve(
         "batch": batch,
         "minimum": minimum,
         "memory": memory,
+        "operations": operations,
         "every": lambda job: stream(job, "every", each=False),
         "start": lambda job: stream(job, "start", each=False),
         "pending": lambda job: stream(job, "every", each=True),
