@@ -5,6 +5,7 @@ them. Only that statement is lexed: the text is cut at lines that begin as a sta
 """
 
 import re
+import string
 from dataclasses import dataclass
 
 from stlspec.lang.parse import following, tokens_of
@@ -18,7 +19,7 @@ _BEGINNING = re.compile(
     r"|spec[ \t]*(?:$|[A-Za-z_])|use[ \t]*(?:$|\"))",
     re.MULTILINE,
 )
-_WORD_BEFORE = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
+_LETTERS = frozenset(string.ascii_letters + string.digits + "_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +72,18 @@ def token_at(source: SourceText, offset: int) -> Token | None:
 def typed(source: SourceText, offset: int, names: frozenset[str]) -> Typed:
     """Return what is being typed at an offset. names: what the text and the files that it uses declare."""
     start = statement_at(source.text, offset).start
-    match = _WORD_BEFORE.search(source.text, start, offset)
-    word = match[0] if match else ""
+    word = _word_before(source.text, start, offset)
     found = tokens_of(SourceText(source.name, source.text[start : offset - len(word)]))
     tokens = tuple(Token(token.type, str(token), _moved(span_of(token), start)) for token in found)
     return Typed(word, Span(offset - len(word), offset), tokens, following(found, names))
+
+
+def _word_before(text: str, least: int, offset: int) -> str:
+    """Return the word that ends at an offset, sought backwards; digits before its first letter are a number."""
+    start = offset
+    while start > least and text[start - 1] in _LETTERS:
+        start -= 1
+    return text[start:offset].lstrip(string.digits)
 
 
 def _moved(span: Span, by: int) -> Span:

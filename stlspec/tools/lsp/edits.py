@@ -6,7 +6,7 @@ In: a reviewed buffer. Out: edits of its source.
 import re
 from dataclasses import dataclass
 
-from stlspec.errors import CATALOGUE, Diagnostic, Edit, SpecError
+from stlspec.errors import CATALOGUE, Diagnostic, Edit
 from stlspec.lang.formatting.text import format_syntax
 from stlspec.source import SourceText, Span
 from stlspec.tools.lsp.workspace import Reviewed
@@ -20,14 +20,12 @@ def formatting(reviewed: Reviewed) -> tuple[Edit, ...]:
     """Return the edits that bring a text into canonical form; none if it is, or has errors of syntax.
 
     Lines at the beginning and at the end that stay as they are are left alone, so that cursors there stay too.
+    Raises: SpecError: X902, the canonical text would not say the same.
     """
-    if reviewed.syntax is None:
+    syntax = reviewed.syntax
+    if syntax is None or any(problem.severity == "error" for problem in syntax.diagnostics):
         return ()
-    before = reviewed.syntax.source.text
-    try:
-        after = format_syntax(reviewed.syntax)
-    except SpecError:
-        return ()
+    before, after = syntax.source.text, format_syntax(syntax)
     old, new = _lines(before), _lines(after)
     first = _same(old, new)
     last = _same(old[first:][::-1], new[first:][::-1])

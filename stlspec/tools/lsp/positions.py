@@ -6,6 +6,7 @@ and one inside a character is its beginning.
 """
 
 import re
+from array import array
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -39,7 +40,7 @@ class Lines:
     encoding: Encoding = DEFAULT
     _starts: list[int] = field(init=False, repr=False, compare=False)
     _ends: list[int] = field(init=False, repr=False, compare=False)
-    _tables: dict[int, list[int] | None] = field(init=False, repr=False, compare=False, default_factory=dict)
+    _tables: dict[int, array[int] | None] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         breaks = [match.span() for match in _LINE_END.finditer(self.text)]
@@ -64,14 +65,14 @@ class Lines:
         column = max(0, character) if table is None else bisect_right(table, max(0, character)) - 1
         return min(start + column, end)
 
-    def _table(self, line: int) -> list[int] | None:
+    def _table(self, line: int) -> array[int] | None:
         """Return how many units precede each character of a line and its end; None where each is one unit."""
         if line not in self._tables:
             text = self.text[self._starts[line] : self._ends[line]]
             table = None
             if not text.isascii() and self.encoding != "utf-32":
                 units = _UNITS[self.encoding]
-                table = [0]
+                table = array("L", [0])
                 for character in text:
                     table.append(table[-1] + units(character))
             self._tables[line] = table

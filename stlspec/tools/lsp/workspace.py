@@ -154,7 +154,7 @@ class Workspace:
         return Reviewed(document, syntax, frozenset(rests_on))
 
     def roots(self, beside: str) -> Iterator[Syntax]:
-        """Yield every spec that may say something about a name: the open ones, and those of the folders.
+        """Yield every spec that may name what another one declares: the open ones, and those of the folders.
 
         beside: a file in whose folder specs are sought if the editor works in no folder.
         Raises: InputError: the folders hold too many files.
@@ -167,8 +167,8 @@ class Workspace:
                 yield known.syntax
         folders = self.folders or (os.path.dirname(beside),)  # noqa: PTH120 - a name, which need not be there
         for path in specs_under(folders, deep=bool(self.folders)):
-            if identity(path) not in seen:
-                with suppress(InputError):  # what cannot be read says nothing
+            with suppress(InputError):  # what cannot be read says nothing
+                if identity(path) not in seen and "use" in files.read_used(path).text:
                     yield self.parsed(path, {})
 
     def parsed(self, name: str, instead: Mapping[str, str]) -> Syntax:

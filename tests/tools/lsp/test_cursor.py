@@ -1,5 +1,7 @@
 """The words around a place are found whatever stands elsewhere in the text."""
 
+import time
+
 import pytest
 
 from stlspec.source import SourceText
@@ -56,3 +58,17 @@ def test_a_quoted_text_that_is_open_is_a_token():
     assert found.word == "da"
     assert [token.kind for token in found.tokens] == ["USE", "BAD_STRING"]
     assert found.fits == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("text", "word"), [("hard a: x > 5ms", "ms"), ("hard a: x > 5", ""), ("a_1", "a_1"), ("é_b", "_b"), ("", "")]
+)
+def test_a_word_is_made_of_letters_and_begins_with_none_of_the_digits(text, word):
+    assert typed(SourceText.of("a.stl", text), len(text), frozenset()).word == word
+
+
+def test_a_text_of_one_long_word_takes_no_time():
+    text = "a" * 500_000 + " "
+    began = time.process_time()
+    assert typed(SourceText.of("a.stl", text), len(text), frozenset()).word == ""
+    assert time.process_time() - began < 5

@@ -4,7 +4,8 @@ import random
 
 import pytest
 
-from stlspec.errors import Fix
+from stlspec.errors import Fix, SpecError
+from stlspec.lang.formatting import text as text_module
 from stlspec.lang.formatting.text import format_text
 from stlspec.tools.lsp.edits import actions, formatting
 from stlspec.tools.lsp.workspace import Workspace
@@ -44,6 +45,12 @@ def test_a_canonical_text_and_a_broken_one_stay():
     assert formatting(reviewed(format_text(TEXT))) == ()
     assert formatting(reviewed("signal x\nhard a: (\n")) == ()
     assert formatting(reviewed("signal x\0")) == ()
+
+
+def test_a_text_that_cannot_be_formatted_safely_is_said_to_be(monkeypatch):
+    monkeypatch.setattr(text_module, "_said", lambda syntax: [object()])
+    with pytest.raises(SpecError, match="X902"):
+        formatting(reviewed(TEXT))
 
 
 def test_random_specs_are_brought_into_canonical_form():

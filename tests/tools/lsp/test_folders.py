@@ -1,5 +1,7 @@
 """Specs are found wherever they lie in a folder, and a folder that is too large is said to be."""
 
+import os
+
 import pytest
 
 from stlspec.errors import InputError
@@ -27,3 +29,12 @@ def test_a_folder_with_too_many_files_is_refused(tmp_path, monkeypatch, limit):
         (tmp_path / f"{i}.stl").write_text("")
     with pytest.raises(InputError, match="too many files"):
         specs_under([str(tmp_path)])
+
+
+def test_meshes_and_what_is_no_file_are_passed_over(tmp_path):
+    (tmp_path / "a.stl").write_bytes(b"\0" * 84 + b"rest")
+    (tmp_path / "b.stl").write_text("solid part\n  facet normal 0 0 1\n")
+    (tmp_path / "c.stl").symlink_to(tmp_path / "nowhere")
+    os.mkfifo(tmp_path / "d.stl")
+    (tmp_path / "e.stl").write_text("# solid ground\nsignal x\n")
+    assert specs_under([str(tmp_path)]) == (str(tmp_path / "e.stl"),)

@@ -16,7 +16,7 @@ TEXT = "signal x\nhard a: always (x > 0)\n"
 
 @pytest.fixture(scope="module")
 def client():
-    client = Client()
+    client = Client(inside=True)
     yield client
     assert client.stop() == 0
 
@@ -128,7 +128,7 @@ def test_fast_typing_is_checked_when_it_rests(client):
 
 
 def test_before_initialize_and_after_shutdown_requests_are_refused():
-    client = Client(start=False)
+    client = Client(start=False, inside=True)
     with pytest.raises(RefusedError) as caught:
         client.at("hover", URI, 0, 0)
     assert caught.value.code == -32002
