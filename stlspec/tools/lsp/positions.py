@@ -40,7 +40,7 @@ class Lines:
     encoding: Encoding = DEFAULT
     _starts: list[int] = field(init=False, repr=False, compare=False)
     _ends: list[int] = field(init=False, repr=False, compare=False)
-    _tables: dict[int, array[int] | None] = field(init=False, repr=False, compare=False, default_factory=dict)
+    _tables: "dict[int, array[int] | None]" = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         breaks = [match.span() for match in _LINE_END.finditer(self.text)]
@@ -65,7 +65,7 @@ class Lines:
         column = max(0, character) if table is None else bisect_right(table, max(0, character)) - 1
         return min(start + column, end)
 
-    def _table(self, line: int) -> array[int] | None:
+    def _table(self, line: int) -> "array[int] | None":
         """Return how many units precede each character of a line and its end; None where each is one unit."""
         if line not in self._tables:
             text = self.text[self._starts[line] : self._ends[line]]
