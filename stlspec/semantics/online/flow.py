@@ -7,17 +7,22 @@ of `late` that call each other. A window is cut into blocks of its length (van H
 is the end of one block and the beginning of the next, so that it costs constant work a sample on average.
 """
 
+from array import array
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from itertools import accumulate
 from typing import Any, ClassVar
+
+import numpy as np
 
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ranges import INF
 from stlspec.semantics.online.front import Front
 from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Plan
-from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
+from stlspec.semantics.online.saving import Remembering, State, Unsound, column, numbers
+
+_SHORT = 48
+"""Blocks up to this length are faster in Python than in NumPy."""
 
 
 def queue(value: Any) -> deque[float]:
@@ -50,18 +55,18 @@ class Block(Remembering):
     that windows still reach into.
     """
 
-    __slots__ = ("_begin", "_kept", "_length", "_pick", "newer", "older")
-    STATE: ClassVar[State] = {"newer": numbers, "older": numbers}
+    __slots__ = ("_begin", "_kept", "_least", "_length", "newer", "older")
+    STATE: ClassVar[State] = {"newer": column, "older": numbers}
 
-    def __init__(self, begin: int, length: int, pick: Callable[[float, float], float], kept: bool) -> None:
-        self._begin, self._length, self._pick, self._kept = begin, length, pick, kept
-        self.newer: list[float] = []
+    def __init__(self, begin: int, length: int, least: bool, kept: bool) -> None:
+        self._begin, self._length, self._least, self._kept = begin, length, least, kept
+        self.newer = array("d")
         self.older: list[float] = []
 
-    def turn(self, values: Sequence[float]) -> None:
+    def turn(self, values: "array[float]") -> None:
         """Make the running block, which is complete, the one before; values: end with those of the block."""
-        self.older += accumulate(values[: -self._length : -1], self._pick)
-        self.newer.clear()
+        self.older += extrema_of_ends(values, self._length, self._least)
+        del self.newer[:]
 
     def check(self, n: int, newest: int) -> None:
         """Check what values together must obey."""
@@ -75,27 +80,26 @@ class UntilBlock(Remembering):
     """The same for until: best, held: for each end of the block before until over it, and the least left value."""
 
     __slots__ = ("_begin", "_kept", "_length", "best", "held", "lefts", "rights")
-    STATE: ClassVar[State] = {"lefts": numbers, "rights": numbers, "best": numbers, "held": numbers}
+    STATE: ClassVar[State] = {"lefts": column, "rights": column, "best": numbers, "held": numbers}
 
     def __init__(self, begin: int, length: int, kept: tuple[bool, bool]) -> None:
         self._begin, self._length, self._kept = begin, length, kept
-        self.lefts: list[float] = []
-        self.rights: list[float] = []
+        self.lefts, self.rights = array("d"), array("d")
         self.best: list[float] = []
         self.held: list[float] = []
 
-    def turn(self, lefts: Sequence[float], rights: Sequence[float]) -> None:
+    def turn(self, lefts: "array[float]", rights: "array[float]") -> None:
         """Make the running block, which is complete, the one before."""
-        ends, keep, best = lefts[: -self._length : -1], self.best.append, -INF
-        self.held += accumulate(ends, min)
-        for left, right in zip(ends, rights[: -self._length : -1], strict=True):
+        self.held += extrema_of_ends(lefts, self._length, least=True)
+        keep, best, first = self.best.append, -INF, -self._length
+        for left, right in zip(lefts[:first:-1], rights[:first:-1], strict=True):
             if left < best:
                 best = left
             if right > best:
                 best = right
             keep(best)
-        self.lefts.clear()
-        self.rights.clear()
+        del self.lefts[:]
+        del self.rights[:]
 
     def check(self, n: int, newest: int) -> None:
         """Check what values together must obey."""
@@ -104,6 +108,22 @@ class UntilBlock(Remembering):
         wanted = [new * self._kept[0], new * self._kept[1], old, old]
         if [len(x) for x in (self.lefts, self.rights, self.best, self.held)] != wanted:
             raise Unsound("a block has another length")
+
+
+def extrema_of_ends(values: "array[float]", length: int, least: bool) -> list[float]:
+    """Return the least (greatest) of the last value, of the last two, and so on up to length - 1 of them.
+
+    Not in the paper: it serves monitors.
+    """
+    if length > _SHORT:
+        # The view must be gone before the array grows again.
+        ends = np.frombuffer(values, dtype=np.float64)[:-length:-1]
+        found: list[float] = (np.minimum if least else np.maximum).accumulate(ends).tolist()
+        return found
+    best = INF if least else -INF
+    if least:
+        return [best := x if x < best else best for x in values[:-length:-1]]
+    return [best := x if x > best else best for x in values[:-length:-1]]
 
 
 def _sizes(count: int, length: int) -> tuple[int, int]:
@@ -221,7 +241,7 @@ class Flow:
         if length == 1 or name in ("INF", "NINF"):
             return name
         lines, sign, neutral = self._lines, "<" if least else ">", INF if least else -INF
-        part = lines.keep(lambda: Block(begin, length, min if least else max, name not in self._taped))
+        part = lines.keep(lambda: Block(begin, length, least, name not in self._taped))
         running = lines.remember(neutral)
         values = self._running_block(part, name, lambda block: block.newer)
         lines.add(f"if {name} {sign} {running}:")
@@ -237,7 +257,7 @@ class Flow:
         lines.add(f"    {running} = {lines.number(neutral)}")
         return result
 
-    def _running_block(self, part: int, name: str, list_of: Callable[[Any], list[float]]) -> str:
+    def _running_block(self, part: int, name: str, list_of: Callable[[Any], Any]) -> str:
         """Name what ends with the values of the running block; write what keeps them if the tape does not."""
         if name in self._taped:
             return self._taped[name]
