@@ -1,18 +1,18 @@
 """Enclosures at every sample of a stretch, for any formula: the interval semantics over arrays.
 
 In: the values of settled formulas at some samples. Out: for each wanted formula three columns, its low end, its
-high end, and its value if the trace ended here. Windows over known samples are the offline kernels, three
-columns at a time; where a window is still open, the tail of the operand is then taken in. One column
-stands for all three as long as nothing under it is open.
+high end, and its value if the trace ended here. Windows over known samples are the offline kernels; where a
+window is still open, the tail of the operand is then taken in. Columns that are equal are one array, and what is
+computed of one array is computed once.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stlspec.compiler.ir import Node
+from stlspec.compiler.ir import Interval, Node
 from stlspec.compiler.ranges import INF, Range
 from stlspec.semantics import windows
 from stlspec.semantics.online.plan import Plan
@@ -21,7 +21,10 @@ from stlspec.semantics.windows import Grid
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-LOW, HIGH, CURRENT = 0, 1, 2
+LOW, HIGH = 0, 1
+
+Columns = tuple[Floats, Floats, Floats]
+"""low, high and current of a formula, (n_samples,) each; not to be written to."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,16 +68,16 @@ def stretch(plan: Plan, times: Ints) -> Stretch:
 
 def enclosures(
     span: Stretch, inputs: Sequence[int], others: Sequence[int], columns: Sequence[Floats]
-) -> dict[int, Floats]:
+) -> dict[int, Columns]:
     """Enclose formulas at every sample of a stretch.
 
     Not in the paper: it evaluates complete traces only.
 
     Args:    span: the samples. inputs, others: from `needed`. columns: values of the inputs, (n_samples,) each.
              Past operators over formulas that are not settled see this stretch only.
-    Returns: by node (n_samples, 3) with columns low, high and current, or (n_samples, 1) if these are equal.
+    Returns: by node low, high and current.
     """
-    found = {index: column[:, None] for index, column in zip(inputs, columns, strict=True)}
+    found = {index: (column, column, column) for index, column in zip(inputs, columns, strict=True)}
     for index in others:
         node = span.plan.nodes[index]
         operands = [found[c] for c in node.children]
@@ -82,42 +85,54 @@ def enclosures(
     return found
 
 
-def three(values: Floats) -> Floats:
-    """Return the three columns, spelled out; a copy."""
-    return np.repeat(values, 3, axis=1) if values.shape[1] == 1 else values.copy()
+def three(columns: Columns, first: int = 0) -> Floats:
+    """Return the columns side by side from a sample on, (n_samples, 3)."""
+    return np.stack([column[first:] for column in columns], axis=1)
 
 
-def _formula(span: Stretch, node: Node, operands: list[Floats], tails: list[Range]) -> Floats:
+def _each(operands: Sequence[Columns], compute: Callable[..., Floats]) -> Columns:
+    """Compute each column from those of the operands, equal ones once."""
+    made: dict[tuple[int, ...], Floats] = {}
+    found = []
+    for columns in zip(*operands, strict=True):
+        key = tuple(id(column) for column in columns)
+        if key not in made:
+            made[key] = compute(*columns)
+        found.append(made[key])
+    return found[0], found[1], found[2]
+
+
+def _formula(span: Stretch, node: Node, operands: list[Columns], tails: list[Range]) -> Columns:
     op = node.op
     if op == "not":
-        values = -operands[0]
-        return values if values.shape[1] == 1 else np.ascontiguousarray(values[:, [HIGH, LOW, CURRENT]])
+        low, high, current = _each(operands, np.negative)
+        return high, low, current
     if op in ("and", "or"):
         extremum = np.minimum if op == "and" else np.maximum
         values = operands[0]
         for operand in operands[1:]:
-            values = extremum(values, operand)
+            values = _each([values, operand], extremum)
         return values
     if op == "next":
         return _next(span, operands[0], tails[0])
     if op == "prev":
-        return np.concatenate((np.full((1, operands[0].shape[1]), -INF), operands[0][:-1]))
-    assert node.interval is not None
+        return _each(operands, lambda values: np.concatenate(([-INF], values[:-1])))
+    interval = node.interval
+    assert interval is not None
     if op in ("always", "eventually"):
         return _window(span, node, operands[0], tails[0])
     if op == "until":
-        return _until(span, node, operands, tails)
+        return _until(span, interval, operands, tails)
     if op == "since":
-        columns = max(x.shape[1] for x in operands)
-        left, right = (x if x.shape[1] == columns else three(x) for x in operands)
-        return windows.since(left, right, span.grid, node.interval)
+        return _each(operands, lambda left, right: windows.since(left, right, span.grid, interval))
     past = windows.historically if op == "historically" else windows.once
-    return past(operands[0], span.grid, node.interval)
+    return _each(operands, lambda values: past(values, span.grid, interval))
 
 
-def _next(span: Stretch, values: Floats, tail: Range) -> Floats:
-    beyond = [[tail[0] if span.plan.certain else -INF, tail[1], -INF]]
-    return np.concatenate((three(values[1:]), beyond))
+def _next(span: Stretch, columns: Columns, tail: Range) -> Columns:
+    beyond = (tail[0] if span.plan.certain else -INF, tail[1], -INF)
+    low, high, current = (np.append(values[1:], x) for values, x in zip(columns, beyond, strict=True))
+    return low, high, current
 
 
 def open_from(span: Stretch, high: int | None) -> int:
@@ -127,38 +142,60 @@ def open_from(span: Stretch, high: int | None) -> int:
     return int(np.searchsorted(span.grid.times, span.last - high, side="right"))
 
 
-def _window(span: Stretch, node: Node, values: Floats, tail: Range) -> Floats:
-    assert node.interval is not None
-    first = open_from(span, node.interval[1])
-    kernel = windows.always if node.op == "always" else windows.eventually
-    found = kernel(values, span.grid, node.interval)
-    if first == len(found):
+def _window(span: Stretch, node: Node, columns: Columns, tail: Range) -> Columns:
+    interval = node.interval
+    assert interval is not None
+    first, always = open_from(span, interval[1]), node.op == "always"
+    kernel, extremum = (windows.always, np.minimum) if always else (windows.eventually, np.maximum)
+    made: dict[int, Floats] = {}
+
+    def known(values: Floats) -> Floats:
+        if id(values) not in made:
+            made[id(values)] = kernel(values, span.grid, interval)
+        return made[id(values)]
+
+    def with_tail(values: Floats, bound: float) -> Floats:
+        if bound != (-INF if always else INF):
+            found = known(values).copy()
+            extremum(found[first:], bound, out=found[first:])
+            return found
+        # Nothing is known of the open ones: windows of the others are all that is slid over.
+        found = np.full(len(values), bound)
+        if first:
+            found[:first] = (
+                known(values)[:first] if id(values) in made else kernel(values, span.grid, interval, found[:first])
+            )
         return found
-    found = three(found)
-    extremum = np.minimum if node.op == "always" else np.maximum
+
+    low, high, current = columns
+    current = known(current)
+    if first == len(current):
+        return known(low), known(high), current
     # The bound that samples to come can only worsen counts possible ones too, the other one certain ones only.
-    sides = (LOW, HIGH) if span.plan.certain else (LOW,) if node.op == "always" else (HIGH,)
-    for side in sides:
-        extremum(found[first:, side], tail[side], out=found[first:, side])
-    return found
+    certain = span.plan.certain
+    return (
+        with_tail(low, tail[LOW]) if always or certain else known(low),
+        with_tail(high, tail[HIGH]) if not always or certain else known(high),
+        current,
+    )
 
 
-def _until(span: Stretch, node: Node, operands: list[Floats], tails: list[Range]) -> Floats:
+def _until(span: Stretch, interval: Interval, operands: list[Columns], tails: list[Range]) -> Columns:
     """Enclose until: the first sample to come in the window is the best of those, as far as one can know."""
-    assert node.interval is not None
-    low, high = node.interval
-    columns = max(x.shape[1] for x in operands)
-    left, right = (x if x.shape[1] == columns else three(x) for x in operands)
-    found = windows.until(left, right, span.grid, node.interval)
+    low, high = interval
+    found = _each(operands, lambda left, right: windows.until(left, right, span.grid, interval))
     first = open_from(span, high)
-    if first == len(found):
+    if first == len(found[LOW]):
         return found
-    found = three(found)
-    held = windows.always(left, span.grid, (0, None))[first:]
     late = span.grid.times[first:] > span.last + span.plan.stride - low if span.plan.dense else None
-    for side in (LOW, HIGH) if span.plan.certain else (HIGH,):
-        branch = np.minimum(held[:, min(side, columns - 1)], tails[1][side])
+    held = _each(operands[:1], lambda left: windows.always(left, span.grid, (0, None)))
+
+    def with_branch(side: int) -> Floats:
+        branch = np.minimum(held[side][first:], tails[1][side])
         if late is not None:
             np.minimum(branch, tails[0][side], out=branch, where=late)
-        np.maximum(found[first:, side], branch, out=found[first:, side])
-    return found
+        result = found[side].copy()
+        np.maximum(result[first:], branch, out=result[first:])
+        return result
+
+    return with_branch(LOW) if span.plan.certain else found[LOW], with_branch(HIGH), found[2]

@@ -10,11 +10,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from stlspec.compiler.bundle import BundleData
-from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ir import Node
 from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.arrays import needed
+from stlspec.semantics.online.counted import Counted
 from stlspec.semantics.online.flow import Flow
 from stlspec.semantics.online.front import Front, Lines
 from stlspec.semantics.online.late import (
@@ -135,21 +135,6 @@ def _operator(node: Node) -> Late:
         return LateSince(Since(low, high))
     assert high is not None
     return LateUntil(low, high) if op == "until" else LateWindow(low, high, op == "eventually")
-
-
-class Counted(Opening):
-    """The same where samples are counted: a requirement is known as late as its horizon."""
-
-    __slots__ = ("_late",)
-
-    def __init__(self, bundle: BundleData, plan: Plan) -> None:
-        super().__init__(bundle, plan)
-        ahead = horizons(plan.nodes, plan.base)
-        self._late = [0 if plan.settled[r.root] else ahead[r.root] for r in bundle.requirements]
-
-    def first_open(self, n: int) -> list[int]:
-        """Return for each requirement the first of n samples at which it is not known."""
-        return [0 if late is None else max(0, n - late) for late in self._late]
 
 
 def every_program(bundle: BundleData, plan: Plan, states: States | None = None) -> Program:

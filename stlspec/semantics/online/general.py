@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stlspec.compiler.horizon import horizons
 from stlspec.compiler.ranges import INF
-from stlspec.semantics.online.arrays import Stretch, enclosures, needed, stretch, three
+from stlspec.semantics.online.arrays import Columns, Stretch, enclosures, needed, stretch, three
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.saving import Remembering, State, Unsound, number, optional, row_of, whole
 from stlspec.semantics.online.tape import Tape, reach_back
@@ -81,7 +81,7 @@ class General(Remembering):
         span = stretch(self._plan, times)
         found = enclosures(span, self._inputs, self._others, columns)
         if self._whole:
-            low, high, current = map(float, three(found[self._roots[0]])[self._origin])
+            low, high, current = (float(column[self._origin]) for column in found[self._roots[0]])
             result = (low, high, current)
         else:
             result = self._combined(span, [found[c] for c in self._roots], self.folded - base)
@@ -90,10 +90,10 @@ class General(Remembering):
             self.tape = Tape(len(self._inputs))
         return result
 
-    def _combined(self, span: Stretch, operands: list[Floats], first: int) -> Enclosure:
+    def _combined(self, span: Stretch, operands: list[Columns], first: int) -> Enclosure:
         assert self.start is not None and self._node.interval is not None
         ages = span.grid.times[first:] - self.start
-        rest = [three(x[first:]) for x in operands]
+        rest = [three(x, first) for x in operands]
         low, high = self._node.interval
         inside = ages >= low
         if high is not None:

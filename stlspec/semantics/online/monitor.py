@@ -16,6 +16,7 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.errors import Diagnostic, UsageError, diagnostic
 from stlspec.semantics.evaluation import Verdict
+from stlspec.semantics.online.arrays import Columns
 from stlspec.semantics.online.every import Known, every_program
 from stlspec.semantics.online.opening import Opening, deferred
 from stlspec.semantics.online.plan import Ends, make_plan
@@ -114,16 +115,20 @@ class Monitor:
         paper: it evaluates complete traces only.
         """
         names = [r.name for r in self._bundle.requirements]
-        if self.n_samples == 0:
-            return {name: _open(0, np.empty(0), np.empty((0, 3))) for name in names}
+        n = self.n_samples
+        if n == 0:
+            return {name: _open(np.arange(0), np.empty(0), _columns(np.empty((0, 3)))) for name in names}
         if self.reading == "start":
             clock = self._objects.clock
             rows = [np.array([row] if row[0] != row[1] else np.empty((0, 3))) for row in clock.ends()]
             begin = np.array([clock.begin])
-            return {name: _open(0, begin[: len(row)], row) for name, row in zip(names, rows, strict=True)}
+            found = [(np.arange(len(row)), begin[: len(row)], _columns(shown_values(row))) for row in rows]
+            return {name: _open(*columns) for name, columns in zip(names, found, strict=True)}
         opening = self._opening()
-        found = opening.open_samples(self.n_samples)
-        return {name: _open(at, opening.stamps(at), rows) for name, (at, rows) in zip(names, found, strict=True)}
+        return {
+            name: _open(opening.numbers(first, n), opening.stamps(first, n), columns)
+            for name, (first, columns) in zip(names, opening.shown_samples(n), strict=True)
+        }
 
     def finish(self) -> Any:
         """Return what is worth what if the trace ends here; the monitor can go on all the same.
@@ -141,13 +146,11 @@ class Monitor:
         return {r.name: Final(shown(value), _verdict(value)) for r, (_, _, value) in rows}
 
     def _rest(self) -> list[Known]:
-        opening = self._opening()
+        opening, n = self._opening(), self.n_samples
         found: list[Known] = []
-        for requirement, (first, rows) in zip(
-            self._bundle.requirements, opening.open_samples(self.n_samples), strict=True
-        ):
-            values = rows[:, 2].tolist()
-            for i, (time, value) in enumerate(zip(opening.stamps(first).tolist(), values, strict=True)):
+        for requirement, (first, columns) in zip(self._bundle.requirements, opening.open_samples(n), strict=True):
+            values = columns[2].tolist()
+            for i, (time, value) in enumerate(zip(opening.stamps(first, n).tolist(), values, strict=True)):
                 found.append(Known(first + i, time, requirement.name, shown(value), _verdict(value)))
         return found
 
@@ -218,11 +221,16 @@ def _verdict(value: float) -> Verdict:
     return Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
 
 
-def _open(first: int, times: Floats, rows: Floats) -> Open:
-    columns = (np.arange(first, first + len(rows)), times, *shown_values(rows).T)
-    for column in columns:
+def _columns(rows: Floats) -> Columns:
+    low, high, current = rows.T
+    return low, high, current
+
+
+def _open(samples: NDArray[np.int64], times: Floats, columns: Columns) -> Open:
+    low, high, current = columns
+    for column in (samples, times, low, high, current):
         column.flags.writeable = False
-    return Open(*columns)
+    return Open(samples, times, low, high, current)
 
 
 def make_monitor(

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.horizon import horizons
-from stlspec.semantics.online.arrays import enclosures, needed, stretch, three
+from stlspec.semantics.online.arrays import Columns, enclosures, needed, stretch
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.saving import Remembering, Unsound
 from stlspec.semantics.online.tape import CountedTape, Tape, reach_back
+from stlspec.semantics.robustness import shown
 
 Floats = NDArray[np.float64]
 
@@ -55,23 +56,32 @@ class Opening(Remembering):
         """Forget what no open sample looks at."""
         self.tape.drop(min(self.first_open(n)), self._reach)
 
-    def open_samples(self, n: int) -> list[tuple[int, Floats]]:
-        """Return for each requirement its first open sample, and columns low, high, current from there on."""
+    def open_samples(self, n: int) -> list[tuple[int, Columns]]:
+        """Return for each requirement its first open sample, and low, high and current from there on."""
         firsts = self.first_open(n)
         base = self.tape.needed(min(*firsts, n - 1), self._reach)
         times, columns = self.tape.arrays(base)
         found = enclosures(stretch(self._plan, times), self._inputs, self._others, columns[: len(self._inputs)])
         result = []
         for requirement, first in zip(self._bundle.requirements, firsts, strict=True):
-            values = three(found[requirement.root][first - base :]) if first < n else np.empty((0, 3))
-            result.append((first, values))
+            low, high, current = (column[first - base :] for column in found[requirement.root])
+            result.append((first, (low, high, current)))
         return result
 
-    def stamps(self, first: int) -> Floats:
-        """Return the times of the samples from number `first` on, (n_samples,)."""
-        if not self._timed:
-            return np.arange(first, self.tape.base + len(self.tape), dtype=np.float64)
-        return np.frombuffer(self.tape.columns[-1], dtype=np.float64)[first - self.tape.base :].copy()
+    def shown_samples(self, n: int) -> list[tuple[int, Columns]]:
+        """Return the same, ties as 0."""
+        result = []
+        for first, (low, high, current) in self.open_samples(n):
+            result.append((first, (shown(low), shown(high), shown(current))))
+        return result
+
+    def numbers(self, first: int, n: int) -> NDArray[np.int64]:
+        """Return the numbers of the samples from `first` to before `n`."""
+        return np.arange(first, n)
+
+    def stamps(self, first: int, n: int) -> Floats:
+        """Return the times of these samples in the spec's unit, as given if they were given."""
+        return np.frombuffer(self.tape.columns[-1], dtype=np.float64)[first - self.tape.base :][: n - first].copy()
 
     def parts(self) -> list[Remembering]:
         """Return the objects that it consists of."""

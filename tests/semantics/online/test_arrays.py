@@ -24,7 +24,7 @@ def plan_of(build, base=STEP, ends="any", high=2.0):
 def rows(plan, root, times, **columns):
     inputs, others = needed(plan, [root])
     values = [np.array(columns["xy"[k]], dtype=float) for k in range(len(inputs))]
-    return enclosures(stretch(plan, np.array(times)), inputs, others, values)[root].tolist()
+    return three(enclosures(stretch(plan, np.array(times)), inputs, others, values)[root]).tolist()
 
 
 def test_an_open_window_takes_in_the_tail_on_the_side_that_it_can_worsen():
@@ -34,10 +34,23 @@ def test_an_open_window_takes_in_the_tail_on_the_side_that_it_can_worsen():
     assert rows(plan, root, [0, 1, 2], x=[1, 3, 2]) == [[1, 1, 1], [2, 2, 2], [-1, 1.5, 2]]
 
 
-def test_a_formula_whose_windows_are_all_closed_needs_one_column():
-    plan, root = plan_of(lambda b, p, q: b.add("eventually", [p], interval=(0, 0)))
-    assert rows(plan, root, [0, 1], x=[1, 3]) == [[1], [3]]
-    assert three(np.array([[1.0]])).tolist() == [[1, 1, 1]]
+def test_columns_that_are_equal_are_one_array():
+    plan, root = plan_of(lambda b, p, q: b.add("not", [b.add("eventually", [p], interval=(0, 0))]))
+    inputs, others = needed(plan, [root])
+    span = stretch(plan, np.array([0, 1]))
+    low, high, current = enclosures(span, inputs, others, [np.array([1.0, 3.0])])[root]
+    assert low is high is current
+    assert low.tolist() == [-1.0, -3.0]
+    plan, root = plan_of(lambda b, p, q: b.add("always", [p], interval=(0, 1)))
+    span = stretch(plan, np.array([0, 1]))
+    low, high, current = enclosures(span, *needed(plan, [root]), [np.array([1.0, 3.0])])[root]
+    assert high is current
+    assert low.tolist() == [1.0, -1.0]
+
+
+def test_three_columns_stand_side_by_side():
+    ones, twos = np.array([1.0, 4.0]), np.array([2.0, 5.0])
+    assert three((ones, twos, ones), 1).tolist() == [[4.0, 5.0, 4.0]]
 
 
 def test_until_needs_its_left_operand_at_samples_to_come_before_its_window():

@@ -4,7 +4,8 @@ import pytest
 
 from stlspec.compiler.bundle import Requirement, Signal
 from stlspec.compiler.ir import Builder
-from stlspec.semantics.online.every import Counted, Known, Network, every_program
+from stlspec.semantics.online.counted import Counted
+from stlspec.semantics.online.every import Known, Network, every_program
 from stlspec.semantics.online.plan import make_plan
 from tests.semantics.online.cases import PERIOD, STEP, bundle_of
 
@@ -37,8 +38,8 @@ def test_requirements_come_each_at_its_time(base, kind):
     opening = objects.parts[program.opening]
     assert type(opening) is kind
     assert opening.first_open(3) == [1, 1, 3, 0]
-    assert [(first, len(rows)) for first, rows in opening.open_samples(3)] == [(1, 2), (1, 2), (3, 0), (0, 3)]
-    assert opening.stamps(1).tolist() == [unit, 2 * unit]
+    assert [(first, len(columns[0])) for first, columns in opening.open_samples(3)] == [(1, 2), (1, 2), (3, 0), (0, 3)]
+    assert opening.stamps(1, 3).tolist() == [unit, 2 * unit]
 
 
 def test_operators_are_shared():
