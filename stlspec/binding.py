@@ -76,7 +76,7 @@ def bind(
     # States of an environment that cannot be made mean nothing in another one.
     worlds = () if failure else tuple(world for world in (own, environment) if world is not None)
     home = worlds[0] if worlds else None
-    used = _used(bundle)
+    used = used_signals(bundle)
     recording = in_unit_of(demonstration.recording, bundle.time)
     recording = _with_paths(recording, used, file)
     places = () if home is None or recording.states is not None else home.state_signals
@@ -94,7 +94,7 @@ def bind(
         signals |= _computed(missing, worlds, recording.states, file)
     missing = [s for s in missing if s.name not in signals]
     if missing:
-        raise failure or DataError([_missing(s, recording, worlds, file) for s in missing])
+        raise failure or DataError([missing_signal(s, recording, worlds, file) for s in missing])
     return BoundDemonstration(
         demonstration=demonstration,
         signals={s.name: signals[s.name] for s in used},
@@ -111,10 +111,11 @@ def columns_of(bundle: BundleData, environment: Environment | None = None) -> fr
     Not in the paper: it spares the reading of others.
     """
     places = () if environment is None else environment.state_signals
-    return frozenset({*map(_key, _used(bundle)), *places})
+    return frozenset({*map(_key, used_signals(bundle)), *places})
 
 
-def _used(bundle: BundleData) -> list[Signal]:
+def used_signals(bundle: BundleData) -> list[Signal]:
+    """Return the signals that the formulas use, as they are declared. Not in the paper: an interface."""
     names = {node.value for node in bundle.nodes if node.op in ("signal", "bool")}
     return [signal for signal in bundle.signals if signal.name in names]
 
@@ -205,7 +206,8 @@ def _computed(missing: Sequence[Signal], worlds: Sequence[Environment], states: 
     return found
 
 
-def _missing(signal: Signal, recording: Recording, worlds: Sequence[Environment], file: str) -> Diagnostic:
+def missing_signal(signal: Signal, recording: Recording, worlds: Sequence[Environment], file: str) -> Diagnostic:
+    """Say that a signal is neither recorded nor computed, and what there is. Not in the paper: error handling."""
     key = _key(signal)
     offered = [name for world in worlds for name in world.signal_names]
     held = (*recording.columns, *recording.others)

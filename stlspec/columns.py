@@ -19,14 +19,14 @@ Floats = NDArray[np.float64]
 
 
 def to_column(
-    name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = ()
+    name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = (), first: int = 0
 ) -> Floats:
     """Convert the values of one signal to float64.
 
     Not in the paper, which takes traces as given.
 
     Args:    name, file, numbers: of the signal, its file and its traces, for messages. values: (n_samples,) numbers or
-             Booleans, or (n_traces, n_samples) of them. kind: "real" or "bool".
+             Booleans, or (n_traces, n_samples) of them. kind: "real" or "bool". first: the number of the first sample.
     Returns: a fresh array, (n_samples,), or time-major (n_samples, n_traces).
     Raises:  DataError D806, D813: a value is no number, or there is no column of them.
     """
@@ -39,14 +39,14 @@ def to_column(
         problem = "is a single value" if raw.ndim == 0 else f"has {raw.ndim} dimensions"
         raise _error("D813", file, what=f"'{name}'", problem=problem)
     if raw.dtype.kind not in "biuf":
-        raw = _converted(values, name, kind, numbers, file)
+        raw = _converted(values, name, kind, numbers, file, first)
     with np.errstate(over="ignore"):
         result = np.array(raw.T, dtype=np.float64, order="C", copy=True)
     if kind == "bool":
         wrong = (result != 0) & (result != 1) & ~np.isnan(result)
         if wrong.any():
             at = first_true(wrong)
-            raise _bad_value(name, kind, result[at], at, numbers, file)
+            raise _bad_value(name, kind, result[at], at, numbers, file, first)
     return result
 
 
@@ -60,7 +60,7 @@ def _packed(values: Any) -> Any:
         return values
 
 
-def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], file: str | None) -> Floats:
+def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], file: str | None, first: int) -> Floats:
     """Convert what numpy does not see as numbers; the first value that is none is reported."""
     objects = np.asarray(values, dtype=object)
     result = np.empty(objects.shape)
@@ -70,15 +70,15 @@ def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], 
                 raise TypeError
             result[at] = value
         except (TypeError, ValueError, OverflowError):
-            raise _bad_value(name, kind, value, at[::-1], numbers, file) from None
+            raise _bad_value(name, kind, value, at[::-1], numbers, file, first) from None
     return result
 
 
 def _bad_value(
-    name: str, kind: str, value: object, at: tuple[int, ...], numbers: Sequence[int], file: str | None
+    name: str, kind: str, value: object, at: tuple[int, ...], numbers: Sequence[int], file: str | None, first: int
 ) -> DataError:
     shown = number_text(float(value)) if isinstance(value, (float, np.floating)) else _clipped(repr(value))
-    where = str(at[0]) if len(at) == 1 else f"{at[0]} of trace {numbers[at[1]] if numbers else at[1]}"
+    where = str(first + at[0]) if len(at) == 1 else f"{at[0]} of trace {numbers[at[1]] if numbers else at[1]}"
     hint = "write true, false, 1 or 0" if kind == "bool" else "write a number, inf or -inf"
     return _error("D806", file, signal=name, value=shown, sample=where, type=kind, help=hint)
 

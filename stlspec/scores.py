@@ -26,6 +26,7 @@ from stlspec.markup.tables import ScoreRow, score_table
 from stlspec.sampling import OnNan
 from stlspec.semantics.ending import End, evaluate_ending
 from stlspec.semantics.evaluation import Evaluation, RequirementResult, Verdict, Witness
+from stlspec.semantics.streaming import Outcome
 
 Label = Literal["good", "incomplete", "bad"]
 LABELS: tuple[Label, ...] = ("bad", "incomplete", "good")
@@ -38,7 +39,7 @@ LARGEST_TERM = 1e100
 """A bounded robustness beyond this is refused like an infinite one: sums of such terms could overflow."""
 
 
-_WHOLE = ("label", "reward", "rank")
+_KEYS = ("label", "reward", "rank")
 """What is said of a demonstration as a whole."""
 
 
@@ -115,7 +116,7 @@ class DemonstrationScore:
     def to_json(self) -> dict[str, Any]:
         """Return its part of the `stlspec.score/1` document."""
         requirements = {name: x.to_json() for name, x in self.requirements.items()}
-        whole = dict(zip(_WHOLE, (self.label, self.reward, self.rank), strict=True))
+        whole = dict(zip(_KEYS, (self.label, self.reward, self.rank), strict=True))
         return {"name": self.name, **whole, "requirements": requirements}
 
     def row(self, href: str | None = None) -> ScoreRow:
@@ -158,7 +159,7 @@ class Ranking:
 
     def _demonstration(self, score: DemonstrationScore) -> dict[str, Any]:
         document = score.to_json()
-        return {key: value for key, value in document.items() if self.at is None or key not in _WHOLE}
+        return {key: value for key, value in document.items() if self.at is None or key not in _KEYS}
 
 
 def bounded_robustness(robustness: float, bound: Bounding, scale: float) -> float:
@@ -292,10 +293,33 @@ def score_demonstration(
 
     Paper: Algorithm 1, lines 6 and 7; equation (2). Arguments and errors as for `score`.
     """
-    row = {r.name: _requirement_score(r, bound.name, result[r.name]) for r in bundle.requirements}
+    row = {
+        r.name: _requirement_score(r, bound.name, result[r.name], failure(r.name, result[r.name]))
+        for r in bundle.requirements
+    }
+    return _whole(bundle, bound.name, row, at)
+
+
+def score_outcomes(bundle: BundleData, name: str, outcomes: Mapping[str, Outcome]) -> DemonstrationScore:
+    """Bound, weigh and label what a stream found of one demonstration; else as `score_demonstration`.
+
+    Paper: Algorithm 1, lines 6 and 7; equation (2).
+    """
+    unit, row = bundle.time.unit, {}
+    for r in bundle.requirements:
+        found = outcomes[r.name]
+        kept = Settled(found.robustness, found.verdict, found.vacuous, found.witness, None, None)
+        reason = _failed(r.name, found.verdict, found.witness, found.reason, unit)
+        row[r.name] = _requirement_score(r, name, kept, reason)
+    return _whole(bundle, name, row)
+
+
+def _whole(
+    bundle: BundleData, name: str, row: Mapping[str, RequirementScore], at: int | None = None
+) -> DemonstrationScore:
     label = None if at is not None else _label(bundle, row)
     reward = demonstration_reward(bundle.weights, [x.bounded for x in row.values()])
-    return DemonstrationScore(bound.name, label, None if label is None else reward, None, MappingProxyType(row))
+    return DemonstrationScore(name, label, None if label is None else reward, None, MappingProxyType(dict(row)))
 
 
 def ranked(bundle: BundleData, scores: Sequence[DemonstrationScore], at: int | None = None) -> Ranking:
@@ -320,9 +344,10 @@ def _label(bundle: BundleData, scores: Mapping[str, RequirementScore]) -> Label 
     )
 
 
-def _requirement_score(requirement: Requirement, demonstration: str, result: RequirementResult) -> RequirementScore:
+def _requirement_score(
+    requirement: Requirement, demonstration: str, result: RequirementResult | Settled, reason: str
+) -> RequirementScore:
     """Bound one robustness; a vacuous requirement says nothing about the demonstration, and counts 0."""
-    reason = failure(requirement.name, result)
     if result.vacuous:
         return RequirementScore(0.0, result, reason)
     bounded = bounded_robustness(result.robustness, requirement.bound, requirement.scale)
@@ -342,11 +367,13 @@ def value_text(result: RequirementResult | Settled) -> str:
 
 def moment(result: RequirementResult) -> str:
     """Name the sample that decides a result, with its time where time is not counted in samples."""
-    witness, trace = result.witness, result.origin.trace
+    return _moment(result.witness, result.origin.trace.unit)
+
+
+def _moment(witness: Witness | None, unit: str) -> str:
     if witness is None:
         return ""
-    timed = trace.unit != STEP
-    return f"sample {witness.sample}" + (f" ({number_text(witness.time)} {trace.unit})" if timed else "")
+    return f"sample {witness.sample}" + (f" ({number_text(witness.time)} {unit})" if unit != STEP else "")
 
 
 def failure(name: str, result: RequirementResult) -> str:
@@ -356,5 +383,11 @@ def failure(name: str, result: RequirementResult) -> str:
     """
     if result.verdict is not Verdict.VIOLATED:
         return ""
-    at = "" if result.witness is None else f" at {moment(result)}"
-    return f"{name} fails{at}: {result.reason}"
+    return _failed(name, result.verdict, result.witness, result.reason, result.origin.trace.unit)
+
+
+def _failed(name: str, verdict: Verdict, witness: Witness | None, reason: str, unit: str) -> str:
+    if verdict is not Verdict.VIOLATED:
+        return ""
+    at = "" if witness is None else f" at {_moment(witness, unit)}"
+    return f"{name} fails{at}: {reason}"

@@ -39,7 +39,8 @@ class Trace:
     signals: float64, (n_samples,), for a batch time-major (n_samples, n_traces); Booleans are 1.0 and 0.0.
     spacing: ticks between samples if it is the same everywhere (or there is one sample), else None.
     ticks_per_unit, unit: of the spec's time. stamps: the time stamps as given, in `unit`, if they mean
-    anything (not for `time step`). numbers: for a batch, the number of each trace in messages.
+    anything (not for `time step`). numbers: for a batch, the number of each trace in messages. first: the number
+    of the first sample in messages, in a piece of a longer recording (`semantics.streaming`); its times go on.
     """
 
     ticks: Ints | range
@@ -50,6 +51,7 @@ class Trace:
     stamps: Floats | None = None
     numbers: tuple[int, ...] | None = None
     file: str | None = None
+    first: int = 0
 
     @property
     def n_samples(self) -> int:
@@ -85,7 +87,7 @@ class Trace:
 
     def place(self, sample: int, column: int = 0) -> str:
         """Name a sample in a message: "3", or "3 of trace 1" in a batch."""
-        return str(sample) if self.numbers is None else f"{sample} of trace {self.numbers[column]}"
+        return str(self.first + sample) if self.numbers is None else f"{sample} of trace {self.numbers[column]}"
 
 
 def make_trace(
@@ -127,7 +129,7 @@ def make_trace(
         elif signal.name in needed:
             raise _missing(signal.name, signals, file)
     shape = _common_shape(columns, signals, time, numbers, file)
-    ticks, stamps = _ticks(base, shape[0], time, file)
+    ticks, stamps = sample_ticks(base, shape[0], time, file)
     if len(shape) == 1:
         numbers = None
     elif numbers is None:
@@ -142,7 +144,7 @@ def make_trace(
         numbers=None if numbers is None else tuple(numbers),
         file=file,
     )
-    _check_values(trace, declared)
+    check_values(trace, declared)
     return trace
 
 
@@ -155,7 +157,7 @@ def time_ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None 
     Raises:  DataError D802, D805, D806, D810, D812: stamps are needed and missing, or cannot be used.
     """
     free = base if time is None else replace(base, kind="stamps", period=None)
-    return ticks_array(_ticks(free, n, time, file)[0])
+    return ticks_array(sample_ticks(free, n, time, file)[0])
 
 
 def ticks_array(ticks: Ints | range) -> Ints:
@@ -225,8 +227,16 @@ def _common_shape(
     return expected
 
 
-def _ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> tuple[Ints | range, Floats | None]:
-    """Return the ticks of the samples since the first, and the stamps if they count."""
+def sample_ticks(
+    base: TimeBase, n: int, time: ArrayLike | None, file: str | None, shift: int = 0
+) -> tuple[Ints | range, Floats | None]:
+    """Return the ticks of n samples since the first, and the stamps if they count.
+
+    Not in the paper: exactness of time.
+
+    Args:   shift: what is added to the number of a sample in messages.
+    Raises: DataError D802, D805, D806, D810 to D813: stamps are needed and missing, or cannot be used.
+    """
     if time is None:
         if base.kind == "stamps":
             raise _error("D810", file, unit=base.unit)
@@ -242,7 +252,7 @@ def _ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
     kept = np.isfinite(stamps) & (np.abs(ticks) < _LONGEST_TICKS)
     if not kept.all():
         at = int((~kept).argmax())
-        raise _error("D812", file, time=number_text(stamps[at]), sample=at)
+        raise _error("D812", file, time=number_text(stamps[at]), sample=at + shift)
     whole = whole_stamps(time)
     if whole is None:
         rounded = np.rint(ticks).astype(np.int64)
@@ -251,11 +261,11 @@ def _ticks(base: TimeBase, n: int, time: ArrayLike | None, file: str | None) -> 
         rounded = (whole - whole[0]) * base.ticks_per_unit
         ticks = rounded.astype(np.float64)
     given = stamps if whole is None else whole
-    _check_increasing(given if base.kind != "stamps" else rounded, given, file)
+    _check_increasing(given if base.kind != "stamps" else rounded, given, file, shift)
     if base.kind == "step":
         return _even_ticks(n, 1), None
     if base.kind == "period":
-        rounded = _on_period(base, stamps, ticks, file)
+        rounded = _on_period(base, stamps, ticks, file, shift)
     return rounded, stamps
 
 
@@ -272,15 +282,15 @@ def _shared_ticks(ticks: range) -> Ints:
     return _frozen(_array_of(ticks))
 
 
-def _check_increasing(values: NDArray[Any], stamps: Floats | Ints, file: str | None) -> None:
+def _check_increasing(values: NDArray[Any], stamps: Floats | Ints, file: str | None, shift: int) -> None:
     wrong = values[1:] <= values[:-1]
     if wrong.any():
         at = int(wrong.argmax()) + 1
         previous, this = (str(s) if isinstance(s, int) else number_text(s) for s in stamps[at - 1 : at + 1].tolist())
-        raise _error("D802", file, sample=at, time=this, previous=previous)
+        raise _error("D802", file, sample=at + shift, time=this, previous=previous)
 
 
-def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None) -> Ints:
+def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None, shift: int) -> Ints:
     """Take stamps that are close to k periods after the first as exactly that."""
     period = base.period or 1
     periods = ticks / period
@@ -292,7 +302,7 @@ def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None) 
         at = int(wrong.argmax())
         length = f"{number_text(period / base.ticks_per_unit)} {base.unit}"
         shown = number_text(stamps[at])
-        raise _error("D811", file, sample=at, time=shown, period=length, unit=base.unit)
+        raise _error("D811", file, sample=at + shift, time=shown, period=length, unit=base.unit)
     return whole.astype(np.int64) * period
 
 
@@ -303,8 +313,11 @@ def _spacing(base: TimeBase, ticks: Ints | range, stamps: Floats | None) -> int 
     return int(steps[0]) if (steps == steps[0]).all() else None
 
 
-def _check_values(trace: Trace, declared: Sequence[Signal]) -> None:
-    """Refuse NaN, and samples outside the range that their signal declares."""
+def check_values(trace: Trace, declared: Sequence[Signal]) -> None:
+    """Refuse NaN, and samples outside the range that their signal declares.
+
+    Not in the paper, which takes traces as given. Raises: DataError D801, D807.
+    """
     for signal in declared:
         column = trace.signals.get(signal.name)
         if column is None:

@@ -25,6 +25,7 @@ from stlspec.cli.many import (
 )
 from stlspec.cli.options import FormatOption, Params, read_params, spare_inputs
 from stlspec.cli.output import Format, ScoreFormat, print_json, warn
+from stlspec.cli.streaming import STDIN, check_stdin, score_stdin
 from stlspec.compiler.printing import counted
 from stlspec.errors import UsageError, diagnostic
 
@@ -61,7 +62,10 @@ class OnNan(StrEnum):
 
 
 Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="a spec file or a compiled bundle")]
-Data = Annotated[list[str], typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ, Parquet")]
+Data = Annotated[
+    list[str],
+    typer.Argument(metavar="DEMO...", help="demonstrations: CSV, JSON, JSONL, NPZ, Parquet; - is CSV on stdin"),
+]
 EndOption = Annotated[End, typer.Option("--end", help="what the end of a trace means")]
 OnNanOption = Annotated[OnNan, typer.Option("--on-nan", help="what to do with a NaN")]
 Resample = Annotated[
@@ -148,6 +152,12 @@ def score(
     from stlspec.many.work import job_of
     from stlspec.sampling import period_of
 
+    if STDIN in demonstrations:
+        more: dict[str, object] = {"--explain": explain, "--plot": plot, "--report": page, "--map": map_file}
+        more |= {"--env": env or demo_env, "--jobs": jobs, "--out": out, "--keep-going": keep_going}
+        more |= {"--engine": engine is EngineName.RAY, "--end interval": end is End.INTERVAL}
+        more |= {"--at": at is not None, "--resample": resample}
+        check_stdin(demonstrations, more)
     _check_explained(explain, output)
     sharing = Sharing(jobs, engine, address, keep_going, out)
     sharing.check(bool(explain or plot or page), require is not None, [spec, *demonstrations])
@@ -166,7 +176,9 @@ def score(
         raise typer.Exit(1 if summary.failed else 0)
     explanations: Any = []
     left_out = False
-    if sharing.wanted:
+    if STDIN in demonstrations:
+        ranking = score_stdin(bundle, end.value, on_nan.value)
+    elif sharing.wanted:
         job = job_of(bundle, environment, **options)
         ranking, left_out = score_in_memory(job, expanded(demonstrations), sharing)
     else:

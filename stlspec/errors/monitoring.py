@@ -1,4 +1,4 @@
-"""D89x: monitoring, that is samples that come one at a time."""
+"""D89x: samples that come one at a time, or a piece at a time: monitoring and streams."""
 
 from stlspec.errors.model import Code
 
@@ -73,6 +73,46 @@ CODES: tuple[Code, ...] = (
         "the row in the arrays that it was made with.",
         bad='bundle.monitor(states={"x": [1, 2]}).update(2)',
         good='bundle.monitor(states={"x": [1, 2]}).update(1)',
+        kind="shown",
+    ),
+    Code(
+        "D896",
+        "a requirement that a stream cannot be scored against",
+        "error",
+        message="'{requirement}' needs every sample at once: {reason}",
+        help="give the operator an end, or score a file, which is read whole; `stlspec monitor` follows it without "
+        "naming the deciding sample",
+        explanation="`stlspec score SPEC -` keeps only the samples that operators with an end look at. The value of an "
+        "operator without end that stands under another one may be decided by any sample to come, at every sample "
+        "anew; what would have to be kept grows with the recording. An outermost `always`, `eventually` or `until` "
+        "without end is no such case, nor is `once` or `historically` anywhere.",
+        bad="# always (a implies eventually b); stlspec score spec.stl -",
+        good="# always (a implies eventually[0, 50] b); stlspec score spec.stl -",
+        kind="shown",
+    ),
+    Code(
+        "D897",
+        "a stream of which too much must be kept",
+        "error",
+        message="the requirements look at {kept} samples at once, in {nodes} expressions and sub-formulas: more than a "
+        "stream is kept of",
+        help="shorten the bounds of the nested operators, or score a file, which is read whole",
+        explanation="`stlspec score SPEC -` keeps the samples between the farthest look back and the farthest look "
+        "ahead of the nested operators, so that memory is bounded by the spec. With time stamps their number depends "
+        "on the data; where it does not fit, the stream is refused.",
+        bad="# always (a implies eventually[0, 1000 h] b), a sample each ms; stlspec score spec.stl -",
+        good="# always (a implies eventually[0, 1 min] b), a sample each ms; stlspec score spec.stl -",
+        kind="shown",
+    ),
+    Code(
+        "D898",
+        "several recordings in one stream",
+        "error",
+        message="episode '{other}' comes after episode '{first}', but a stream is one recording",
+        help="score a file, which may hold several, or send each recording on its own",
+        explanation="`stlspec score SPEC -` follows one recording from its first sample to its last.",
+        bad="episode,x\na,1\nb,1\n",
+        good="episode,x\na,1\na,1\n",
         kind="shown",
     ),
 )

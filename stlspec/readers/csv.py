@@ -9,7 +9,7 @@ import csv
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from stlspec.readers.model import (
     repeated,
 )
 
-_FLOATS_TELL_APART = 2.0**53
+FLOATS_TELL_APART = 2.0**53
 """Whole numbers below this are the same as floats."""
 _EXPECTED = "a header with the names of the columns, then one row a sample"
 
@@ -40,7 +40,7 @@ def read(path: Path) -> list[Recording]:
     stream = io.StringIO(read_text(path, _EXPECTED), newline="")
     reader = csv.reader(stream, strict=True)
     try:
-        header = next((_header(row, path) for row in reader if row), None)
+        header = next((header_of(row, path) for row in reader if row), None)
         if header is None:
             raise refusal("D833", path, expected=_EXPECTED)
         columns = _numbers(stream, header)
@@ -68,16 +68,19 @@ def _numbers(stream: io.StringIO, header: Sequence[str]) -> dict[str, Array] | N
             table = np.empty((0, 0))
         if table.shape[1] == len(header):
             columns = dict(zip(header, np.ascontiguousarray(table.T), strict=True))
-            if "time" in columns and np.abs(columns["time"]).max() >= _FLOATS_TELL_APART:
+            if "time" in columns and np.abs(columns["time"]).max() >= FLOATS_TELL_APART:
                 stream.seek(begin)
-                columns["time"] = _whole(stream, header.index("time"), columns["time"])
+                columns["time"] = whole_column(stream, header.index("time"), columns["time"])
             return columns
     stream.seek(begin)
     return None
 
 
-def _whole(stream: io.StringIO, at: int, floats: Array) -> Array:
-    """Read one column again as whole numbers; it stays as it is if it holds anything else."""
+def whole_column(stream: io.StringIO, at: int, floats: Array) -> Array:
+    """Read one column again as whole numbers; it stays as it is if it holds anything else.
+
+    Not in the paper: exactness of time.
+    """
     try:
         return np.loadtxt(
             stream,
@@ -100,7 +103,7 @@ def _rows(reader: Any, header: Sequence[str], path: Path) -> list[list[str]]:
         if len(row) == len(header):
             rows.append(row)
         elif row:
-            _ragged(row, header, reader.line_num, path)
+            ragged(row, header, reader.line_num, path)
     return rows
 
 
@@ -108,8 +111,8 @@ def _recordings(words: dict[str, tuple[str, ...]], path: Path) -> list[Recording
     labels = words.pop("episode", None)
     actions = words.pop("action", None)
     stamps = words.pop("time", None)
-    time = None if stamps is None else _stamps(stamps)
-    columns = {name: _column(column) for name, column in words.items()}
+    time = None if stamps is None else stamps_of(stamps)
+    columns = {name: column_of_words(column) for name, column in words.items()}
     groups = [(None, slice(None))] if labels is None else _groups(labels)
     return [
         checked(
@@ -125,7 +128,8 @@ def _recordings(words: dict[str, tuple[str, ...]], path: Path) -> list[Recording
     ]
 
 
-def _header(row: Sequence[str], path: Path) -> list[str]:
+def header_of(row: Sequence[str], path: Path) -> list[str]:
+    """Return the names of the columns. Not in the paper: a file format. Raises: DataError D835: it is no header."""
     names = [name.strip() for name in row]
     if "" in names:
         hint = "name every column; with pandas, write to_csv(..., index=False)"
@@ -140,7 +144,8 @@ def _header(row: Sequence[str], path: Path) -> list[str]:
     return names
 
 
-def _ragged(row: Sequence[str], header: Sequence[str], line: int, path: Path) -> None:
+def ragged(row: Sequence[str], header: Sequence[str], line: int, path: Path) -> NoReturn:
+    """Refuse a row that is not as long as the header. Not in the paper: a file format. Raises: DataError D834."""
     hint = "give the row one value for every column"
     for separator, called in ((";", "semicolons"), ("\t", "tabs")):
         if len(header) == 1 and separator in header[0]:
@@ -149,8 +154,8 @@ def _ragged(row: Sequence[str], header: Sequence[str], line: int, path: Path) ->
     raise refusal("D834", path, line=line, found=found, expected=len(header), help=hint)
 
 
-def _column(words: Sequence[str]) -> Array:
-    """Convert a column of text, whole if it is all numbers."""
+def column_of_words(words: Sequence[str]) -> Array:
+    """Convert a column of text, whole if it is all numbers. Not in the paper: a file format."""
     try:
         column = np.array(words, dtype=np.float64)
     except ValueError:
@@ -159,14 +164,14 @@ def _column(words: Sequence[str]) -> Array:
     return column if not any("_" in word for word in words) else column_of(list(map(number_of_word, words)))
 
 
-def _stamps(words: Sequence[str]) -> Array:
-    """Convert time stamps, to whole numbers if all are written as such."""
+def stamps_of(words: Sequence[str]) -> Array:
+    """Convert time stamps, to whole numbers if all are written as such. Not in the paper: exactness of time."""
     if not any("_" in word for word in words):
         try:
             return np.array([int(word) for word in words], dtype=np.int64)
         except (ValueError, OverflowError):
             pass
-    return _column(words)
+    return column_of_words(words)
 
 
 def _groups(labels: Sequence[str]) -> list[tuple[str | None, Any]]:

@@ -14,7 +14,7 @@ from typing import Any, Generic, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle import BundleData, TimeBase
 from stlspec.compiler.ir import Node
 from stlspec.compiler.passes import optimised
 from stlspec.compiler.printing import number_text
@@ -268,7 +268,7 @@ def evaluate_trace(
     keep_freed_memory()
     sample = _sample(trace, at)
     if end == "strict":
-        _check_length(bundle, trace, sample)
+        check_length(bundle, _remaining(trace, sample), trace.file)
     roots = [r.root for r in bundle.requirements]
     exact = evaluate_nodes(*optimised(bundle.nodes, roots, MIN_MAX.laws, trace.spacing), trace)
     robustness = (
@@ -290,7 +290,7 @@ def _evaluate_batch(
     samples = [_sample(trace, at) for trace in traces]
     if end == "strict":
         for trace, sample in zip(traces, samples, strict=True):
-            _check_length(bundle, trace, sample)
+            check_length(bundle, _remaining(trace, sample), trace.file)
     roots = [r.root for r in bundle.requirements]
     pairs = list(zip(traces, samples, strict=True))
     exact = _gathered(
@@ -338,17 +338,26 @@ def _check_end(end: str) -> None:
         raise UsageError([diagnostic("D880", what=f"end={end!r}", help="use clip or strict")])
 
 
-def _check_length(bundle: BundleData, trace: Trace, sample: int) -> None:
-    """Refuse a trace that ends before the horizon of a requirement."""
-    length = int(trace.ticks[-1]) - int(trace.ticks[sample])
+def _remaining(trace: Trace, sample: int) -> int:
+    return int(trace.ticks[-1]) - int(trace.ticks[sample])
+
+
+def check_length(bundle: BundleData, length: int, file: str | None) -> None:
+    """Refuse a trace that ends before the horizon of a requirement.
+
+    Not in the paper: it evaluates complete episodes only.
+
+    Args:   length: ticks from the reported sample to the last one.
+    Raises: DataError D809.
+    """
     reach = bounded_reach(bundle.nodes, bundle.time)
     errors = [
         diagnostic(
             "D809",
-            file=trace.file,
+            file=file,
             requirement=r.name,
-            length=_duration(length, trace),
-            horizon=_duration(reach[r.root], trace),
+            length=_duration(length, bundle.time),
+            horizon=_duration(reach[r.root], bundle.time),
         )
         for r in bundle.requirements
         if reach[r.root] > length
@@ -357,7 +366,7 @@ def _check_length(bundle: BundleData, trace: Trace, sample: int) -> None:
         raise DataError(errors)
 
 
-def _duration(ticks: int, trace: Trace) -> str:
-    count = number_text(ticks / trace.ticks_per_unit)
-    plural = "s" if trace.unit == "step" and ticks != 1 else ""
-    return f"{count} {trace.unit}{plural}"
+def _duration(ticks: int, base: TimeBase) -> str:
+    count = number_text(ticks / base.ticks_per_unit)
+    plural = "s" if base.unit == "step" and ticks != 1 else ""
+    return f"{count} {base.unit}{plural}"

@@ -63,7 +63,7 @@ def _values(node: Node, operands: Sequence[Floats], trace: Trace) -> Floats:
     if op == "signal":
         return trace.signals[str(node.value)]
     if op == "now":
-        return _per_sample((trace.times - trace.times[0]) / trace.ticks_per_unit, trace)
+        return _per_sample(trace.times / trace.ticks_per_unit, trace)
     if op in ("delta", "rate"):
         return _change(operands[0], trace, per_unit=op == "rate")
     if op in _UNARY:

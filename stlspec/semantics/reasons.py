@@ -38,9 +38,20 @@ def reason_text(nodes: Sequence[Node], predicate: int, negated: bool, trace: Tra
     """
     node = nodes[predicate]
     if node.op == "bool":
-        value = bool(trace.signals[str(node.value)][sample])
-        return f"{node.value} is {_truth(value)}, needs {_truth(not negated)}"
-    left, right = (float(v[sample]) for v in evaluate_nodes(nodes, node.children, trace))
+        return reason_of(nodes, predicate, negated, [float(trace.signals[str(node.value)][sample])])
+    values = evaluate_nodes(nodes, node.children, trace)
+    return reason_of(nodes, predicate, negated, [float(v[sample]) for v in values])
+
+
+def reason_of(nodes: Sequence[Node], predicate: int, negated: bool, values: Sequence[float]) -> str:
+    """Say what `reason_text` says, from the values of a predicate's operands, or of a Boolean signal, at the sample.
+
+    Not in the paper: it serves the reports.
+    """
+    node = nodes[predicate]
+    if node.op == "bool":
+        return f"{node.value} is {_truth(bool(values[0]))}, needs {_truth(not negated)}"
+    left, right = values
     sides = (_Side(nodes, node.children[0], left), _Side(nodes, node.children[1], right))
     sign = COMPARISONS[node.op]
     if sides[0].constant and not sides[1].constant:

@@ -129,7 +129,7 @@ def _evaluate(plan: _Plan, trace: Trace, spare: list[Floats]) -> list[Floats]:
                 ending = (operand for operand, child in pairs if uses[child] == 1)
                 out = next(ending, None)
                 out = (spare.pop() if spare else np.empty(shape))[: end - first] if out is None else out
-                values[index] = _formula_values(node, operands, trace, reads, out)
+                values[index] = formula_values(node, operands, trace, reads, out)
             for child in node.children:
                 uses[child] -= 1
                 if uses[child] == 0:
@@ -178,8 +178,11 @@ def shown(values: Floats) -> Floats:
     return result
 
 
-def _formula_values(node: Node, operands: list[Floats], trace: Trace, reads: Span, out: Floats) -> Floats:
-    """Write a formula's values to `out`, given those of its operands at the samples that it reads."""
+def formula_values(node: Node, operands: Sequence[Floats], trace: Trace, reads: Span, out: Floats) -> Floats:
+    """Write a formula's values to `out` and return it, given those of its operands at the samples that it reads.
+
+    Paper: as `evaluate_nodes`.
+    """
     op, samples = node.op, slice(*reads)
     if op in COMPARISONS:
         compare(op, operands[0], operands[1], out)

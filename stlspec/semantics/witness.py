@@ -6,7 +6,7 @@ a negation) leads to it from the root. The marks travel down the DAG as Boolean 
 sign, and windows as unions of ranges, so the work is linear in the number of samples.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,37 +45,46 @@ def decide(nodes: Sequence[Node], root: int, trace: Trace, at: int) -> Decision:
     Args:    nodes: the DAG. root: a formula. trace: one or a batch. at: a sample, from 0.
     Returns: the decision for each trace; of several predicates at one sample the first in the DAG.
     """
-    marks = _Marks(nodes, root, trace, at)
-    for index in reversed(marks.formulas):
-        for sign in (1.0, -1.0):
-            mask = marks.take(index, sign)
-            if mask is not None and mask.any():
-                _descend(marks, index, sign, mask)
+    formulas = [i for i in needed_nodes(nodes, [root]) if nodes[i].op not in REAL]
+    columns = evaluate_nodes(nodes, formulas, trace)
+    rows = (np.ascontiguousarray(c.T).reshape(trace.n_traces, -1) for c in columns)
+    values = dict(zip(formulas, rows, strict=True))
+    start = np.zeros((trace.n_traces, trace.n_samples), dtype=np.bool_)
+    start[:, at] = True
+    marks = Marks(nodes, values, Grid(trace.ticks, trace.spacing), values[root][:, at : at + 1])
+    marks.descend(root, start)
     vacuous = marks.ran_out & (marks.samples < 0)
     return Decision(marks.samples, marks.predicates, marks.negated, vacuous)
 
 
-class _Marks:
-    """The masks still to be handed down, (n_traces, n_samples) each, and what was found."""
+class Marks:
+    """The masks still to be handed down, (n_traces, n_samples) each, and what was found.
 
-    def __init__(self, nodes: Sequence[Node], root: int, trace: Trace, at: int) -> None:
-        self.nodes = nodes
-        self.grid = Grid(trace.ticks, trace.spacing)
-        self.formulas = [i for i in needed_nodes(nodes, [root]) if nodes[i].op not in REAL]
-        columns = evaluate_nodes(nodes, self.formulas, trace)
-        rows = (np.ascontiguousarray(c.T).reshape(trace.n_traces, -1) for c in columns)
-        self.values = dict(zip(self.formulas, rows, strict=True))
-        self.wanted = self.values[root][:, at : at + 1]
-        self.samples = np.full(trace.n_traces, -1, dtype=np.int64)
-        self.predicates = np.full(trace.n_traces, -1, dtype=np.int64)
-        self.negated = np.zeros(trace.n_traces, dtype=np.bool_)
-        self.ran_out = np.zeros(trace.n_traces, dtype=np.bool_)
-        start = np.zeros((trace.n_traces, trace.n_samples), dtype=np.bool_)
-        start[:, at] = True
+    values: of every formula that may be reached. wanted: the value that is looked for, (n_traces, 1). samples,
+    predicates, negated: as in `Decision`. ran_out: a window was empty, or a next or prev off the end.
+    """
+
+    def __init__(self, nodes: Sequence[Node], values: Mapping[int, Floats], grid: Grid, wanted: Floats) -> None:
+        self.nodes, self.values, self.grid, self.wanted = nodes, values, grid, wanted
+        n_traces = len(wanted)
+        self.samples = np.full(n_traces, -1, dtype=np.int64)
+        self.predicates = np.full(n_traces, -1, dtype=np.int64)
+        self.negated = np.zeros(n_traces, dtype=np.bool_)
+        self.ran_out = np.zeros(n_traces, dtype=np.bool_)
+        self._open: dict[tuple[int, float], Bools] = {}
+
+    def descend(self, root: int, start: Bools) -> None:
+        """Follow the wanted value from the marked samples of a formula down to predicates."""
         self._open = {(root, 1.0): start}
+        for index in range(root, -1, -1):
+            for sign in (1.0, -1.0):
+                mask = self._open.pop((index, sign), None)
+                if mask is not None and mask.any():
+                    _descend(self, index, sign, mask)
 
-    def take(self, index: int, sign: float) -> Bools | None:
-        return self._open.pop((index, sign), None)
+    def hand_window(self, index: int, sign: float, window: Bools) -> None:
+        """Mark the samples in the windows of an operator over one operand."""
+        self.hand(self.nodes[index].children[0], sign, window)
 
     def hand(self, child: int, sign: float, mask: Bools) -> None:
         """Mark the samples of `mask` at which the child has the wanted value."""
@@ -92,7 +101,7 @@ class _Marks:
         self.negated[better] = sign < 0
 
 
-def _descend(marks: _Marks, index: int, sign: float, mask: Bools) -> None:
+def _descend(marks: Marks, index: int, sign: float, mask: Bools) -> None:
     """Hand the marks of a node to its operands."""
     node = marks.nodes[index]
     if node.op in COMPARISONS or node.op == "bool":
@@ -103,11 +112,12 @@ def _descend(marks: _Marks, index: int, sign: float, mask: Bools) -> None:
         for child in node.children:
             marks.hand(child, sign, mask)
     elif node.op not in ("true", "false"):
-        _descend_in_time(marks, node, sign, mask)
+        _descend_in_time(marks, index, sign, mask)
 
 
-def _descend_in_time(marks: _Marks, node: Node, sign: float, mask: Bools) -> None:
+def _descend_in_time(marks: Marks, index: int, sign: float, mask: Bools) -> None:
     """Hand the marks of a temporal operator on; the past ones are seen backwards in time."""
+    node = marks.nodes[index]
     step = -1 if node.op in PAST else 1
     grid = marks.grid.reversed() if node.op in PAST else marks.grid
     mask = mask[:, ::step]
@@ -124,7 +134,7 @@ def _descend_in_time(marks: _Marks, node: Node, sign: float, mask: Bools) -> Non
     rows, samples = rows[~empty], samples[~empty]
     if len(node.children) == 1:
         window = _union(rows, begin[samples], end[samples], mask.shape)
-        marks.hand(node.children[0], sign, window[:, ::step])
+        marks.hand_window(index, sign, window[:, ::step])
         return
     left, right = (marks.values[c][:, ::step] for c in node.children)
     wanted = sign * marks.wanted
