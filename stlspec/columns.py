@@ -18,6 +18,9 @@ from stlspec.errors import DataError, diagnostic
 Floats = NDArray[np.float64]
 
 
+_LARGEST_SINGLE = 3e38
+
+
 def to_column(
     name: str, values: ArrayLike, file: str | None, kind: str = "real", numbers: Sequence[int] = (), first: int = 0
 ) -> Floats:
@@ -85,6 +88,16 @@ def _bad_value(
 
 def _clipped(text: str) -> str:
     return text if len(text) <= 30 else text[:29] + "…"
+
+
+def snapped(values: Floats, low: float, high: float) -> None:
+    """Write a bound over values beyond it that are what 32 bits make of it: -1.2 comes back as -1.2000000476837158.
+
+    Not in the paper: environments, sensors and files measure in 32 bits, but bounds are declared in 64.
+    """
+    for bound, beyond in ((low, values < low), (high, values > high)):
+        if beyond.any() and abs(bound) < _LARGEST_SINGLE:
+            values[beyond & (values == float(np.float32(bound)))] = bound
 
 
 def first_true(mask: NDArray[np.bool_]) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stlspec.columns import first_true, to_column, unmasked
+from stlspec.columns import first_true, snapped, to_column, unmasked
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
@@ -314,7 +314,7 @@ def _spacing(base: TimeBase, ticks: Ints | range, stamps: Floats | None) -> int 
 
 
 def check_values(trace: Trace, declared: Sequence[Signal]) -> None:
-    """Refuse NaN, and samples outside the range that their signal declares.
+    """Refuse NaN, and samples outside the range that their signal declares; `snapped` decides on its very edge.
 
     Not in the paper, which takes traces as given. Raises: DataError D801, D807.
     """
@@ -332,6 +332,11 @@ def check_values(trace: Trace, declared: Sequence[Signal]) -> None:
         if (low, high) == (-np.inf, np.inf):
             continue
         outside = (column < low) | (column > high)
+        if outside.any():
+            column.flags.writeable = True  # nobody else holds it yet
+            snapped(column, low, high)
+            column.flags.writeable = False
+            outside = (column < low) | (column > high)
         if outside.any():
             at = first_true(outside)
             bounds = {"low": number_text(low), "high": number_text(high)}

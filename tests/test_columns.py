@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stlspec.columns import first_true, to_column, unmasked
+from stlspec.columns import first_true, snapped, to_column, unmasked
 from stlspec.errors import DataError
 
 
@@ -56,3 +56,15 @@ def test_masked_arrays_are_not_imported_for_the_sake_of_others():
 
 def test_the_first_true_is_the_earliest_sample():
     assert first_true(np.array([[False, False], [False, True], [True, False]])) == (1, 1)
+
+
+def test_a_bound_as_32_bits_have_it_is_the_bound():
+    values = np.array(
+        [np.float32(-1.2), -1.2, 0.5, np.float32(0.07), np.nextafter(np.float32(0.07), np.float32(1))], float
+    )
+    snapped(values, -1.2, 0.07)
+    assert values[:2].tolist() == [-1.2, -1.2] and values[3] == 0.07
+    assert values[2] == 0.5 and values[4] > 0.07  # beyond by more than rounding
+    unbounded = np.array([1e300, np.inf])
+    snapped(unbounded, -np.inf, np.inf)
+    assert unbounded.tolist() == [1e300, np.inf]

@@ -193,7 +193,7 @@ class Front:
             high = lines.number(INF if signal.high is None else signal.high)
             # NaN fails both comparisons.
             lines.add(f"if not {low} <= {variable} <= {high}:")
-        lines.add(f"    {lines.bind(outside)}({lines.bind(signal)}, {variable}, n, clock.now(time))")
+        lines.add(f"    {variable} = {lines.bind(outside)}({lines.bind(signal)}, {variable}, n, clock.now(time))")
 
     def _real(self, index: int, node: Node) -> str:
         lines = self.lines

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
+from stlspec.columns import snapped
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
@@ -177,13 +178,17 @@ def _bad(name: str, kind: str, value: Any, sample: int) -> NoReturn:
     refuse("D806", signal=name, value=shown, sample=sample, type=kind, help=hint)
 
 
-def outside(signal: Signal, value: float, sample: int, time: str) -> NoReturn:
-    """Refuse a value that is NaN or outside its declared range."""
+def outside(signal: Signal, value: float, sample: int, time: str) -> float:
+    """Refuse a value that is NaN or outside its declared range; return the bound that it is in 32 bits."""
     if math.isnan(value):
         refuse("D801", signal=signal.name, sample=sample, time=time)
+    edge = np.array([value])
+    snapped(edge, *(side if b is None else b for side, b in ((-math.inf, signal.low), (math.inf, signal.high))))
+    if edge[0] != value:
+        return float(edge[0])
     low = number_text(-math.inf if signal.low is None else signal.low)
     high = number_text(math.inf if signal.high is None else signal.high)
-    refuse("D807", signal=signal.name, value=number_text(value), low=low, high=high, sample=sample, time=time)
+    return refuse("D807", signal=signal.name, value=number_text(value), low=low, high=high, sample=sample, time=time)
 
 
 def missing(names: Mapping[str, Any] | Any, wanted: list[str]) -> NoReturn:

@@ -80,3 +80,14 @@ def test_whole_stamps_stay_exact_where_floats_would_not():
     assert monitor.finish()["c"].robustness == 1.0
     with pytest.raises(DataError, match="D802"):
         monitor.update({"x": 1.0}, 1_700_000_000_153_456_789)
+
+
+def test_a_bound_as_32_bits_have_it_is_the_bound_online_and_offline():
+    bundle = api.compile("signal p in [-1.2, 0.07]\nhard r: always (p > -2)\n")
+    edge = float(np.float32(-1.2))
+    assert edge < -1.2
+    assert bundle.monitor().update({"p": edge})["r"].current == -1.2 - -2
+    assert bundle.evaluate({"p": [edge, 0.0]})["r"].robustness == -1.2 - -2
+    for refused in (np.nextafter(np.float32(-1.2), np.float32(-2)), -1.3):
+        with pytest.raises(DataError, match="D807"):
+            bundle.monitor().update({"p": refused})
