@@ -61,7 +61,7 @@ class Learner:
         return found
 
     def _moves(self) -> list[list[Move]]:
-        table = moves(self.task.transitions, self.endings, self.settings.step_cost)
+        table = moves(self.task.transitions, self.endings, self.settings.step_cost, self.task.payoffs)
         if self.promises is not None:
             tried = set(self.promises.tried)
             table = [

@@ -50,13 +50,19 @@ def shaped_reward(base: float, potential: float, next_potential: float, gamma: f
     return base + gamma * next_potential - potential
 
 
-def moves(transitions: Sequence[Sequence[int]], endings: Sequence[int], step_cost: float) -> list[list[Move]]:
+def moves(
+    transitions: Sequence[Sequence[int]], endings: Sequence[int], step_cost: float, payoffs: Sequence[float] = ()
+) -> list[list[Move]]:
     """Work out, for every state and action, where it leads, what it pays, and whether it ends the episode.
 
     Not in the paper: it makes a step of training a look-up.
 
     Args:    transitions: (n_states, n_actions), the next states. endings: (n_states,), how an episode stands
-             in each state. step_cost: what every step costs.
+             in each state. step_cost: what every step costs. payoffs: (n_states,), what entering each state pays
+             besides, () = nothing.
     Returns: (n_states, n_actions) moves with the base reward, in lists, which the learner may change.
     """
-    return [[(after, base_reward(endings[after], step_cost), endings[after]) for after in row] for row in transitions]
+    paid = [base_reward(ending, step_cost) for ending in endings]
+    if payoffs:
+        paid = [base + more for base, more in zip(paid, payoffs, strict=True)]
+    return [[(after, paid[after], endings[after]) for after in row] for row in transitions]

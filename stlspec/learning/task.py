@@ -38,6 +38,7 @@ class Task:
     robustness: (n_states, n_hard), of the condition that each hard requirement demands always.
     places: (n_states,), the state of the environment in each; () = they are the environment's own states.
     stream: what tells the random numbers of this task from those of other tasks of one run.
+    payoffs: (n_states,), what entering each state pays besides the base reward; () = nothing.
     """
 
     goal_name: str
@@ -49,6 +50,7 @@ class Task:
     robustness: tuple[tuple[float, ...], ...]
     places: tuple[int, ...] = ()
     stream: tuple[int, ...] = ()
+    payoffs: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

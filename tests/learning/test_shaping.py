@@ -23,6 +23,8 @@ def test_shaping_adds_the_discounted_gain_of_potential():
 def test_moves_pay_the_base_reward():
     assert moves(((0, 1), (1, 1)), (RUNS, VIOLATION), 0.25)[0] == [(0, -0.25, RUNS), (1, -1.25, VIOLATION)]
     assert moves(((0, 1), (1, 1)), (RUNS, GOAL), 0.25)[0] == [(0, -0.25, RUNS), (1, 0.75, GOAL)]
+    paid = moves(((0, 1), (1, 1)), (RUNS, GOAL), 0.25, payoffs=(-0.5, 2.0))
+    assert paid == [[(0, -0.75, RUNS), (1, 2.75, GOAL)], [(1, 2.75, GOAL), (1, 2.75, GOAL)]]
 
 
 def solve(matrix, right):
