@@ -24,9 +24,10 @@ from stlspec.paper.cases import (
     case_of,
     random_grid,
 )
+from stlspec.paper.handmade import REWARDS, make_handmade
 from stlspec.paper.irl import measure
 from stlspec.paper.maps import moved_holes
-from stlspec.paper.runs import Row, Rows, Run, make_runs
+from stlspec.paper.runs import Row, Rows, Run, make_run, make_runs
 
 SIZES = (5, 7, 10)
 UNSEEN_MAPS = 3
@@ -118,6 +119,29 @@ def lakes(budget: Budget, jobs: int, progress: Progress) -> dict[str, Any]:
             yield from _each(name, [case_of(name)] * budget.seeds, (SHAPED, PLAIN, UNMASKED, STANDARD))
 
     return _learned(runs(), jobs, progress)
+
+
+HAND_CRAFTED = ("grid-5", "grid-7", "grid-10", "lake-4", "lake-8")
+
+
+def hand_crafted(budget: Budget, jobs: int, progress: Progress) -> dict[str, Any]:
+    """Learn with hand-crafted rewards and the same mask, cost of a step and start: only the reward differs.
+
+    Paper: section 4, "standard Q-Learning with hand-crafted rewards".
+    """
+
+    def runs() -> Iterator[Run]:
+        for name in HAND_CRAFTED:
+            for method in (SHAPED, *REWARDS):
+                for seed in range(budget.seeds):
+                    yield Run(name, method, case_of(name), seed, options=OPTIONS.get(method, {}))
+
+    return rows_to_json(make_runs(list(runs()), jobs, progress, make_either))
+
+
+def make_either(run: Run) -> Row:
+    """Make a run, of a hand-crafted reward if its method is one."""
+    return make_handmade(run) if run.method in REWARDS else make_run(run)
 
 
 def unseen(name: str) -> list[Case]:
@@ -255,6 +279,7 @@ EXPERIMENTS: Mapping[str, Experiment] = {
         Experiment("grids", "single-goal grids", grids),
         Experiment("two-goals", "grids with two goals", two_goals),
         Experiment("lakes", "FrozenLake, exploration", lakes),
+        Experiment("hand-crafted", "with hand-crafted rewards", hand_crafted),
         Experiment("transfer", "FrozenLake, unseen maps", transfer),
         Experiment("ablation", "with some of the demonstrations", ablation),
         Experiment("letter", "Algorithm 2 as printed", letter),

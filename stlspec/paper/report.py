@@ -10,6 +10,7 @@ from typing import Any
 from stlspec.paper import tables
 from stlspec.paper.claims import CLAIMS, Results, Verdict, judge, rows_of
 from stlspec.paper.experiments import PLAIN, STANDARD
+from stlspec.paper.handmade import BY_DISTANCE
 from stlspec.paper.journal import Record
 from stlspec.paper.spread import short
 
@@ -36,6 +37,8 @@ DIFFERENCES = """\
 NOTES = {
     "two-goals": "Both orders of the goals are trained in full before the better one is chosen, so the steps up to "
     "success are mostly those of training the other order: they say nothing about the demonstrations.",
+    "hand-crafted": "Sparse: +1 at the goal, -1 for a violation, -0.01 a step. By distance: besides, up to -0.1 a step, "
+    "the farther from the goal it ends. The paper does not say which hand-crafted reward it compares with.",
     "lakes": "The paper's figures 4a and 4b show steps in each episode, without numbers in the text, so no ratio to "
     "its figures can be given. An episode that ends in a hole is short: steps per episode alone would flatter a "
     "method that falls into holes, which is why steps up to success are compared.",
@@ -114,6 +117,7 @@ def sections(results: Results) -> list[tuple[str, str]]:
         ("grids", "Single-goal grids", STANDARD),
         ("two-goals", "Two goals", PLAIN),
         ("lakes", "FrozenLake: exploration", STANDARD),
+        ("hand-crafted", "Hand-crafted rewards, with the same mask", BY_DISTANCE),
         ("transfer", "FrozenLake: unseen maps", PLAIN),
         ("ablation", "With some of the demonstrations", "none"),
     ):

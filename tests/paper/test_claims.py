@@ -6,6 +6,7 @@ import pytest
 
 from stlspec.paper.claims import CLAIMS, Verdict, by_ratio, by_share, judge, worst
 from stlspec.paper.experiments import EXPERIMENTS, LETTER, PLAIN, SHAPED, STANDARD, UNMASKED
+from stlspec.paper.handmade import BY_DISTANCE
 from stlspec.paper.spread import Spread
 
 YES, PARTLY, NO, UNKNOWN = Verdict.REPRODUCED, Verdict.PARTLY, Verdict.NOT, Verdict.UNKNOWN
@@ -67,16 +68,29 @@ def test_one_size_that_fails_makes_it_partly(made):
     assert verdict("grids", {"grids": made.as_json(groups)}) is PARTLY
 
 
-def lake(made, standard, unmasked, shaped=(1, 1, 1, 1), **fields):
-    by = {SHAPED: made.rows(*shaped), STANDARD: made.rows(*standard, **fields), UNMASKED: made.rows(*unmasked)}
-    return {"lakes": made.as_json({"lake-4": by})}
+def lake(made, standard, unmasked, distance=(2, 2, 2, 2), **fields):
+    shaped = made.rows(1, 1, 1, 1)
+    by = {SHAPED: shaped, STANDARD: made.rows(*standard, **fields), UNMASKED: made.rows(*unmasked)}
+    dense = {SHAPED: shaped, BY_DISTANCE: made.rows(*distance)}
+    return {
+        "lakes": made.as_json({"lake-4": by}),
+        "hand-crafted": made.as_json({"lake-4": dense, "grid-5": {SHAPED: made.rows(9), BY_DISTANCE: made.rows(1)}}),
+    }
 
 
 def test_exploration_is_judged_without_the_mask_whatever_the_mask_gains(made):
     assert verdict("exploration", lake(made, [10] * 4, [9, 9, 9, 9])) is YES
     assert verdict("exploration", lake(made, [10] * 4, [9, 9, 9, 12])) is PARTLY
-    assert verdict("exploration", lake(made, [10] * 4, [9, 12, 12, 12])) is NO
-    assert verdict("exploration", lake(made, [10] * 4, [None] * 4)) is NO
+    assert verdict("exploration", lake(made, [10] * 4, [None] * 4)) is PARTLY
+
+
+def test_exploration_must_beat_a_reward_by_distance_too(made):
+    slow = [12] * 4
+    assert verdict("exploration", lake(made, [10] * 4, [9] * 4, distance=[1, 1, 1, 1])) is PARTLY
+    assert verdict("exploration", lake(made, [10] * 4, slow, distance=[1, 1, 1, 1])) is NO
+    evidence = judge(BY_NAME["exploration"], lake(made, [10] * 4, [5] * 4)).evidence
+    assert "reward by distance, both with the mask, lake-4: 2 (2 to 2) times fewer" in evidence
+    assert "grid-5" not in evidence
 
 
 def test_safety_is_judged_by_violations(made):

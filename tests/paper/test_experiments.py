@@ -3,9 +3,10 @@ import json
 import pytest
 
 from stlspec.paper.cases import TABLE_1, case_of
-from stlspec.paper.experiments import EXPERIMENTS, OPTIONS, rows_from_json, rows_to_json, unseen
+from stlspec.paper.experiments import EXPERIMENTS, OPTIONS, make_either, rows_from_json, rows_to_json, unseen
 from stlspec.paper.irl import IrlResult
 from stlspec.paper.maps import cells
+from stlspec.paper.runs import Run
 
 
 def run(name, made):
@@ -33,6 +34,15 @@ def test_lakes_are_learned_by_every_method_from_every_seed(made):
         assert all([row.seed for row in found] == [0, 1] for found in by.values())
         assert all(row.success for row in by["shaped"])
         assert max(row.violations for row in by["shaped"]) < min(row.violations for row in by["standard"])
+
+
+def test_hand_crafted_rewards_are_learned_beside_ours(made):
+    runs = [Run("lake-4", method, case_of("lake-4"), 1) for method in ("shaped", "sparse", "by distance")]
+    shaped, sparse, dense = map(make_either, runs)
+    assert shaped.to_success != sparse.to_success
+    assert {shaped.success, sparse.success, dense.success} == {True}
+    plain = make_either(Run("lake-4", "plain", case_of("lake-4"), 1, options=OPTIONS["plain"]))
+    assert (sparse.to_success, sparse.env_steps) == (plain.to_success, plain.env_steps)
 
 
 def test_mountain_car_is_learned_within_its_budget(made):
