@@ -271,10 +271,30 @@ def table_1(name: str) -> Callable[[Budget, int, Progress], dict[str, Any]]:
     return run
 
 
+COUNTS = (3, 10, 30, 70)
+
+
+def irl_demonstrations(budget: Budget, _jobs: int, progress: Progress) -> dict[str, Any]:
+    """Measure how near MCE-IRL comes to the ground truth from more and more optimal demonstrations.
+
+    Paper: section 4, "MCE-IRL requires at least 60 optimal demonstrations".
+    """
+    case, rows = case_of("grid-5"), []
+    assert case.map is not None
+    truth = inference.ground_truth(case.map)
+    for number, count in enumerate(COUNTS, 1):
+        found = measure(case, case.experts(count), iterations=budget.irl_iterations, seconds=budget.irl_seconds)
+        near = None if found.reward is None else inference.correlation(found.reward, truth)
+        rows.append(found.to_json() | {"correlation": near})
+        progress(number, len(COUNTS))
+    return {"counts": list(COUNTS), "rows": rows, "irl": rows[-1]}
+
+
 EXPERIMENTS: Mapping[str, Experiment] = {
     found.name: found
     for found in (
         *(Experiment(f"table-1-{n}", f"Table 1: {case_of(n).title}", table_1(n)) for n in TABLE_1),
+        Experiment("irl-demos", "MCE-IRL from more and more demonstrations", irl_demonstrations),
         Experiment("demonstrations", "what demonstrations are worth; inference on larger maps", demonstrations),
         Experiment("grids", "single-goal grids", grids),
         Experiment("two-goals", "grids with two goals", two_goals),

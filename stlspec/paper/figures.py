@@ -26,7 +26,7 @@ from stlspec.rewards import ranked_states, reward_of
 
 COLOURS = {SHAPED: "#2b6cb0", UNMASKED: "#7d5ba6", PLAIN: "#e0a458", STANDARD: "#c0392b"}
 LABELS = {
-    SHAPED: "LfD+STL", UNMASKED: "LfD+STL, no mask", PLAIN: "Q-learning with the mask", STANDARD: "standard Q-learning",
+    SHAPED: "LfD+STL", UNMASKED: "LfD+STL, no mask", PLAIN: "no demonstrations", STANDARD: "standard Q-learning",
 }  # fmt: skip
 _INK, _MUTED = "#1b1f24", "#6b7480"
 _DPI = 130
@@ -130,7 +130,7 @@ def draw_dots(
     by_group: Mapping[str, Mapping[str, Sequence[Row]]], of: Callable[[Row], float | None], label: str, place: Path
 ) -> None:
     """Draw one dot a run, by group and method, with the median as a line; what never happened is left out."""
-    figure = figure_of(1.2 + 2.2 * len(by_group), 3.6)
+    figure = figure_of(max(6.6, 1.2 + 2.2 * len(by_group)), 3.6)
     ax = figure.subplots()
     draw = np.random.default_rng(0)
     for place_of_group, by in enumerate(by_group.values()):
@@ -143,6 +143,8 @@ def draw_dots(
                 ax.plot([x - 0.08, x + 0.08], [np.median(values)] * 2, color=colour, linewidth=2.5)
     ax.set_xticks(range(len(by_group)), list(by_group))
     ax.set_yscale("log")
+    ax.yaxis.set_major_formatter("{x:.0f}")
+    ax.yaxis.set_minor_formatter("")
     _dress(ax, "", "")
     ax.set_ylabel(label, color=_INK)
     figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize=8, labelcolor=_INK)
@@ -170,7 +172,7 @@ def draw_car(name: str, place: Path) -> None:
     ax.axvline(0.5, color=_MUTED, linewidth=1, linestyle="--")
     _dress(ax, f"{case.title}: inferred reward", "position (flag at 0.5)")
     ax.set_ylabel("velocity", color=_INK)
-    ax.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="upper left")
+    ax.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="lower right")
     save(figure, place)
 
 
@@ -186,7 +188,10 @@ def draw_truth(name: str, result: Mapping[str, Any], place: Path) -> None:
     panels = [("ground truth", scene_of(case, result["truth"], ()))]
     irl = result.get("irl") or {}
     if irl.get("reward") is not None:
-        panels.append((f"MCE-IRL, {irl['demonstrations']} demonstrations", scene_of(case, irl["reward"], ())))
+        # an offset means nothing in a reward, and colours start at 0
+        least = min(irl["reward"])
+        shifted = [value - least for value in irl["reward"]]
+        panels.append((f"MCE-IRL, {irl['demonstrations']} demonstrations, shifted", scene_of(case, shifted, ())))
     panels.append((f"STL reward, {len(case.demos)} demonstrations", scene_of(case, ours, ())))
     draw_panels(panels, f"{case.title}: rewards", place, path="")
 

@@ -37,13 +37,18 @@ DIFFERENCES = """\
 NOTES = {
     "two-goals": "Both orders of the goals are trained in full before the better one is chosen, so the steps up to "
     "success are mostly those of training the other order: they say nothing about the demonstrations.",
-    "hand-crafted": "Sparse: +1 at the goal, -1 for a violation, -0.01 a step. By distance: besides, up to -0.1 a step, "
-    "the farther from the goal it ends. The paper does not say which hand-crafted reward it compares with.",
+    "hand-crafted": "Sparse: +1 at the goal, -1 for a violation, -0.01 a step. By distance: besides, up to -0.1 a "
+    "step, the farther from the goal it ends. The paper does not say which hand-crafted reward it compares with.",
     "lakes": "The paper's figures 4a and 4b show steps in each episode, without numbers in the text, so no ratio to "
     "its figures can be given. An episode that ends in a hole is short: steps per episode alone would flatter a "
     "method that falls into holes, which is why steps up to success are compared.",
 }
 """What is to be known to read a table."""
+
+NOT_EXAMINED = """\
+That MCE-IRL cannot learn the reward of several goals, or of scattered obstacles, that rewards are easier to interpret,
+and that several demonstrators may follow their own preferences: nothing is measured here that would decide it.
+"""
 
 FIGURES = (
     ("Rewards and ground truth", ("truth-",)),
@@ -64,6 +69,7 @@ def write(records: Mapping[str, Record], figures: Sequence[str] = (), folder: st
     parts = [f"# {TITLE}", INTRODUCTION.rstrip(), _measured(records), _claims(results)]
     parts += [f"## {heading}\n\n{text}" for heading, text in sections(results)]
     parts += [f"## {heading}\n\n{_images(names, folder)}" for heading, names in _sorted(figures)]
+    parts.append(f"## Claims that are not examined\n\n{NOT_EXAMINED.rstrip()}")
     parts.append(f"## What is done differently\n\n{DIFFERENCES.rstrip()}")
     return "\n\n".join(parts) + "\n"
 
@@ -112,6 +118,7 @@ def sections(results: Results) -> list[tuple[str, str]]:
         found.append(("Table 1: time to infer the reward", f"{tables.table_1(results)}\n\n{_table_1_notes(results)}"))
         if any(result.get("truth") for result in results.values()):
             text = f"{tables.accuracy(results)}\n\nPearson's correlation with the paper's ground truth, all states."
+            text += f"\n\n{tables.few(results['irl-demos'])}" if "irl-demos" in results else ""
             found.append(("How near the rewards come to the ground truth", text))
     for name, heading, against in (
         ("grids", "Single-goal grids", STANDARD),

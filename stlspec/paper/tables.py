@@ -162,5 +162,12 @@ def accuracy(results: Mapping[str, Mapping[str, Any]]) -> str:
     return table(head, lines)
 
 
+def few(result: Mapping[str, Any]) -> str:
+    """Write what MCE-IRL makes of more and more demonstrations."""
+    pairs = zip(result["counts"], result["rows"], strict=True)
+    rows = [[str(count), _signed(row.get("correlation")), seconds(row.get("seconds"))] for count, row in pairs]
+    return table(["MCE-IRL, demonstrations", "correlation", "time"], rows)
+
+
 def _signed(value: float | None) -> str:
     return NOT_MEASURED if value is None else f"{value:+.2f}"

@@ -23,7 +23,8 @@ def test_shares(share, expected):
 
 
 @pytest.mark.parametrize(
-    ("quartiles", "expected"), [((1.01, 2, 3), YES), ((1, 2, 3), PARTLY), ((0.5, 1, inf), NO), ((2, inf, inf), YES)]
+    ("quartiles", "expected"),
+    [((1.01, 1.1, 3), YES), ((1, 2, 3), PARTLY), ((1.01, 1.09, 3), NO), ((0.5, 1, inf), NO), ((2, inf, inf), YES)],
 )
 def test_ratios(quartiles, expected):
     assert by_ratio(Spread(*quartiles)) is expected
@@ -79,8 +80,8 @@ def lake(made, standard, unmasked, distance=(2, 2, 2, 2), **fields):
 
 
 def test_exploration_is_judged_without_the_mask_whatever_the_mask_gains(made):
-    assert verdict("exploration", lake(made, [10] * 4, [9, 9, 9, 9])) is YES
-    assert verdict("exploration", lake(made, [10] * 4, [9, 9, 9, 12])) is PARTLY
+    assert verdict("exploration", lake(made, [10] * 4, [5, 5, 5, 5])) is YES
+    assert verdict("exploration", lake(made, [10] * 4, [5, 5, 12, 12])) is PARTLY
     assert verdict("exploration", lake(made, [10] * 4, [None] * 4)) is PARTLY
 
 
@@ -139,6 +140,8 @@ def test_time_is_judged_on_every_row_and_missing_rows_count_against_it(made):
     assert verdict("time", {"table-1-grid-5": faster, "table-1-grid-7": slower}) is PARTLY
     assert verdict("time", {"table-1-grid-5": slower}) is NO
     assert verdict("time", {"table-1-grid-5": absent}) is UNKNOWN
+    guessed = dict(made.table_1, irl=dict(made.irl, extrapolated=True))
+    assert "times faster (extrapolated)" in judge(BY_NAME["time"], {"table-1-grid-5": guessed}).evidence
     assert "grid-5: 2 000 times faster" in judge(BY_NAME["time"], {"table-1-grid-5": faster}).evidence
 
 
@@ -154,6 +157,21 @@ def test_the_ground_truth_is_judged_by_correlation(made):
     assert verdict("truth", {"table-1-grid-5": nearer, "table-1-grid-7": farther}) is PARTLY
     assert verdict("truth", {"table-1-grid-5": farther, "table-1-grid-7": farther}) is NO
     assert verdict("truth", {"table-1-grid-5": nearer, "table-1-grid-7": made.table_1}) is UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("correlations", "expected"),
+    [
+        ((0.1, 0.5, 0.71, 0.8), YES),
+        ((0.1, 0.5, 0.8, 0.8), PARTLY),
+        ((0.75, 0.5, 0.5, 0.8), NO),
+        ((0.1, None, 0.5, 0.8), UNKNOWN),
+    ],
+)
+def test_few_demonstrations_must_be_too_few(made, correlations, expected):
+    rows = [dict(made.irl, correlation=value) for value in correlations]
+    results = {"irl-demos": {"counts": [3, 10, 30, 70], "rows": rows, "irl": dict(made.irl, skipped="no network")}}
+    assert verdict("few", results) is expected
 
 
 def test_dimension_is_judged_by_time_for_each_sample():

@@ -75,6 +75,17 @@ def test_a_row_of_table_1_has_times_and_where_there_is_one_the_ground_truth(made
     assert found["irl"]["seconds"] == 0.5
 
 
+def test_the_baseline_gets_more_and_more_demonstrations(made, monkeypatch):
+    def answer(case, experts, *, iterations, seconds):
+        return IrlResult(None, reward=(0.0,) * 24 + (float(len(experts)),), seconds=1.0)
+
+    monkeypatch.setattr("stlspec.paper.experiments.measure", answer)
+    found = run("irl-demos", made)
+    assert found["counts"] == [3, 10, 30, 70]
+    assert [row["reward"][-1] for row in found["rows"]] == [3, 10, 30, 70]
+    assert [row["correlation"] for row in found["rows"]] == pytest.approx([found["rows"][0]["correlation"]] * 4)
+
+
 def test_without_the_libraries_of_the_baseline_a_row_says_what_is_missing(made, monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     found = run("table-1-grid-5", made)

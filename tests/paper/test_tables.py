@@ -69,3 +69,10 @@ def test_accuracy_lists_the_tasks_with_a_ground_truth(made):
     results = {"table-1-grid-5": dict(made.table_1, irl=made.irl), "table-1-lake-4": dict(made.table_1, truth=None)}
     lines = cells(tables.accuracy(results))
     assert lines[2:] == [["(5 x 5) grid", "+0.50", "16 of 25", "-0.25"]]
+
+
+def test_more_and_more_demonstrations_are_listed(made):
+    rows = [made.irl, dict(made.irl, correlation=None, seconds=None)]
+    assert cells(tables.few({"counts": [3, 70], "rows": rows}))[2:] == [
+        ["3", "-0.25", "4 s"], ["70", "not measured", "not measured"],
+    ]  # fmt: skip
