@@ -166,7 +166,7 @@ def _let(made: Expressions, statement: LetStatement) -> Doc:
         last = statement.arguments[-1].span.end
         head.append(Fold(listed("(", names, ")"), statement.arguments[0].span.start, last))
     body = statement.body
-    return (*head, " =", Fold(Indent((LINE, made.doc(body))), body.span.start, body.span.end))
+    return (*head, " =", Indent(Fold((LINE, made.doc(body)), body.span.start, body.span.end)))
 
 
 def _expect(span: Span, parts: Sequence[Doc]) -> Doc:

@@ -2,6 +2,7 @@
 
 import pytest
 
+from stlspec.lang.formatting.layout import WIDTH
 from stlspec.lang.formatting.text import format_text
 
 EVERY = """\
@@ -58,3 +59,12 @@ def test_many_samples_fill_lines():
     text = format_text(f"expect a holds on {{x: [{', '.join(['12.5'] * 60)}]}}\n")
     assert max(map(len, text.splitlines())) <= 100
     assert len(text.splitlines()) < 10
+
+
+@pytest.mark.parametrize("length", range(90, 104))
+def test_a_body_behind_a_comment_stays_within_the_width(length):
+    body = f"{'a' * (length - 14)} > 1 and b > 2"
+    for comment in ("", "# c", "\n# c"):
+        lines = format_text(f"let p ={comment}\n{body}\n").splitlines()
+        assert max(map(len, lines)) <= WIDTH
+        assert (f"    {body}" in lines) == (length + 4 <= WIDTH) or f"let p = {body}" in lines
