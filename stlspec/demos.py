@@ -70,6 +70,19 @@ def load_demonstrations(
     return tuple(found)
 
 
+def common_environment(demonstrations: Sequence[Demonstration]) -> Environment | None:
+    """Return the environment that all demonstrations name; None if one names none, or they name different ones.
+
+    Not in the paper: file formats.
+
+    Raises: InputError: it is unknown, or is not described well.
+    """
+    described = [d.recording.env for d in demonstrations]
+    if not described or described[0] is None or any(env != described[0] for env in described):
+        return None
+    return environment_of(described[0], file=demonstrations[0].file or demonstrations[0].name)
+
+
 def make_demonstration(
     name: str,
     signals: Mapping[str, npt.ArrayLike] | None = None,

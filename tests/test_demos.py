@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from stlspec.demos import (
+    common_environment,
     document_of,
     load_demonstrations,
     make_demonstration,
@@ -76,3 +77,12 @@ def test_whole_stamps_stay_whole():
         demonstration = make_demonstration("d", {"x": [1, 2]}, time=kept)
         assert demonstration.recording.time.tolist() == stamps
         assert recording_of(document_of(demonstration), Path("d")).time.tolist() == stamps
+
+
+def test_demonstrations_that_all_name_one_environment_share_it():
+    lake = {"id": "FrozenLake-v1", "args": {"is_slippery": False}}
+    first = make_demonstration("a", states=[0, 1], env=lake)
+    assert common_environment([first, make_demonstration("b", states=[0], env=dict(lake))]).id == "FrozenLake-v1"
+    other = make_demonstration("c", states=[0], env={"id": "FrozenLake-v1", "args": {"map_name": "8x8"}})
+    for several in ([], [first, other], [first, make_demonstration("d", states=[0])]):
+        assert common_environment(several) is None

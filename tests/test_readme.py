@@ -1,5 +1,6 @@
 """README tells the truth: every command in it runs, except the two that set up and test."""
 
+import os
 import re
 import shlex
 import subprocess
@@ -92,3 +93,29 @@ def test_the_language_at_a_glance_checks() -> None:
 def test_every_file_that_readme_links_exists() -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", TEXT):
         assert (ROOT / target).exists(), target
+
+
+def test_the_reader_in_the_readme_works_once_it_is_installed(tmp_path: Path) -> None:
+    (code,) = re.findall(r"^```python reader\n(.*?)^```", TEXT, re.S | re.M)
+    assert len([line for line in code.splitlines() if line]) <= 15
+    section, entry = re.findall(r'`(\[project\.entry-points\."[\w.]+"\])`, then `(\w+ = "[\w.:]+")`', TEXT)[0]
+    (tmp_path / "tlog.py").write_text(code)
+    about = tmp_path / "tlog-1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: tlog\nVersion: 1.0\n")
+    group = section.split('"')[1]
+    (about / "entry_points.txt").write_text(f"[{group}]\n{entry.replace(chr(34), '')}\n")
+    (tmp_path / "s.stl").write_text("time s\nsignal x\nsignal y\nhard up: always (x > y)\n")
+
+    def scored(text: str) -> subprocess.CompletedProcess[str]:
+        (tmp_path / "d.tlog").write_text(text)
+        env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+        words = ["score", "s.stl", "d.tlog"]
+        command = [sys.executable, "-m", "stlspec", *words]
+        return subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+
+    run = scored("0 x=2 y=-1\n1.5 x=2 y=3\n")
+    assert run.returncode == 0 and "up fails at sample 1 (1.5 s): x = 2, needs > y = 3" in run.stdout, run.stderr
+    for text, told in (("0 x=2 y=-1\n1 x\n", "(line 2)"), ("0 x=2 y=1\n1 x=2\n", "D805"), ("", "D833")):
+        run = scored(text)
+        assert run.returncode == 2 and told in run.stderr and run.stderr.count("error[") == 1, run.stderr

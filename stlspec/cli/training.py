@@ -27,6 +27,7 @@ from stlspec.cli.output import Format, print_json, warn
 from stlspec.errors import UsageError, diagnostic
 
 if TYPE_CHECKING:
+    from stlspec.envs.model import Environment
     from stlspec.report import Progress
 
 
@@ -92,19 +93,20 @@ def learn(
 ) -> None:
     """Learn a policy that meets the requirements (Algorithms 1 to 3), or explain a finished run."""
     from stlspec import api, learning, report, rewards
-    from stlspec.demos import load_demonstrations
+    from stlspec.demos import common_environment, load_demonstrations
 
     if explain is not None:
         _explain(explain, out, output)
         return
-    bundle = api.read(_complete(spec, env, demos, reward), read_params(params))
+    bundle = api.read(_complete(spec, demos, reward), read_params(params))
     environment = environment_from(env, env_arg, map_file)
-    assert environment is not None
+    loaded = load_demonstrations(demos or [])
+    environment = environment or _named(common_environment(loaded), len(loaded))
     with _progress(out) as bar:
         outcome = learning.learn(
             bundle,
             environment,
-            load_demonstrations(demos or []),
+            loaded,
             rewards.load_reward(reward) if reward is not None else None,
             method=method.value,
             episodes=episodes,
@@ -131,16 +133,23 @@ def learn(
         raise typer.Exit(1)
 
 
-def _complete(spec: Path | None, env: str | None, demos: list[str] | None, reward: Path | None) -> Path:
+def _named(common: "Environment | None", n_demonstrations: int) -> "Environment":
+    """Return the environment that the demonstrations name, where no option does."""
+    if common is None:
+        why = "the demonstrations do not all name the same one" if n_demonstrations else "a reward map names none"
+        way = f"name the environment to learn in: --env ID; {why}"
+        raise UsageError([diagnostic("D880", what="missing option '--env'", help=way)])
+    return common
+
+
+def _complete(spec: Path | None, demos: list[str] | None, reward: Path | None) -> Path:
     """Return the spec, if all is there that learning takes; explaining takes less, so typer cannot ask for it."""
     if spec is None:
         way_out = "`--demos` takes every path up to the next option: put SPEC before it"
         raise UsageError([diagnostic("D880", what="missing argument 'SPEC'", help=way_out)])
-    if env is None:
-        raise UsageError([diagnostic("D880", what="missing option '--env'", help="see `stlspec learn --help`")])
     if (reward is None) == (not demos):
         what = "`learn` takes demonstrations or a reward map" + (", not both" if demos else "")
-        raise UsageError([diagnostic("D880", what=what, help="give --demos DEMO... or --reward R.json")])
+        raise UsageError([diagnostic("D880", what=what, help="give --demos DEMO... or --reward R.json, and --env ID")])
     return spec
 
 

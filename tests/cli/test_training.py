@@ -119,3 +119,17 @@ def test_what_is_missing_is_named(words: list[str], tmp_path: Path, capsys: pyte
 )
 def test_a_state_is_read_as_it_is_written(text: str, state: object) -> None:
     assert parse_state(text) == state
+
+
+def test_the_environment_is_the_one_that_the_demonstrations_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["learn", SPEC, *SHORT, "--demos", DEMOS, "--out", str(tmp_path / "a")]) == 0
+    assert run(["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(tmp_path / "b")]) == 0
+    assert (tmp_path / "a" / "episodes.csv").read_bytes() == (tmp_path / "b" / "episodes.csv").read_bytes()
+    capsys.readouterr()
+    first, second = (json.loads(line) for line in Path(DEMOS).read_text().splitlines()[:2])
+    other = tmp_path / "other.jsonl"
+    other.write_text(json.dumps(first) + "\n" + json.dumps({**second, "env": None}) + "\n")
+    assert run(["learn", SPEC, *SHORT, "--demos", str(other), "--out", str(tmp_path / "c")]) == 2
+    assert "do not all name the same one" in capsys.readouterr().err

@@ -1,14 +1,19 @@
 """Minari datasets as recordings, and back. The datasets are made here; nothing is fetched."""
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from stlspec.cli.main import run
 from stlspec.errors import DataError
 from stlspec.readers import minari
 from stlspec.readers.model import Recording
+from tests.readers.recorded import frozen_lake, mountain_car
+
+SPECS = Path(__file__).parents[2] / "specs"
 
 HAS_MINARI = all(__import__("importlib.util").util.find_spec(name) for name in ("minari", "h5py", "PIL"))
 needs_minari = pytest.mark.skipif(not HAS_MINARI, reason="the extra minari is not installed")
@@ -87,3 +92,31 @@ def test_a_recording_needs_states_and_actions(lacking):
 def test_without_the_extra_the_way_out_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "minari", None)
     assert code(minari.read, Path("minari:a/b-v0")) == "D847"
+
+
+@needs_minari
+def test_a_dataset_of_the_lake_is_scored_and_learned_from(tmp_path, capsys):
+    frozen_lake("lake/paths-v0")
+    assert run(["score", str(SPECS / "frozenlake_4x4.stl"), "minari:lake/paths-v0", "--format", "json"]) == 0
+    scores = json.loads(capsys.readouterr().out)["demonstrations"]
+    assert [d["label"] for d in scores] == ["good", "good", "bad"]
+    assert scores[2]["requirements"]["avoid"]["witness"]["sample"] == 2
+    # The environment is the one that the dataset names.
+    words = ["learn", str(SPECS / "frozenlake_4x4.stl"), "--episodes", "500", "--out", str(tmp_path / "out")]
+    assert run([*words, "--demos", "minari:lake/paths-v0"]) == 0
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert result["success"] and result["policy"]["states"][-1] == [3, 3]
+    assert "breaks avoid; forbids down from [0, 1]" in capsys.readouterr().out
+
+
+@needs_minari
+def test_a_dataset_of_the_car_is_scored_and_learned_from(tmp_path, capsys):
+    mountain_car("car/swings-v0")
+    recordings = minari.read(Path("minari:car/swings-v0"))
+    assert min(state[0] for r in recordings for state in r.states) == float(np.float32(-1.2)) < -1.2
+    assert run(["score", str(SPECS / "mountain_car.stl"), "minari:car/swings-v0", "--format", "json"]) == 0
+    scores = json.loads(capsys.readouterr().out)["demonstrations"]
+    assert [d["label"] for d in scores] == ["good"] * 4
+    words = ["learn", str(SPECS / "mountain_car.stl"), "--bins", "20,20", "--base", "env", "--episodes", "5"]
+    assert run([*words, "--demos", "minari:car/swings-v0", "--out", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.count("good  minari:car/swings-v0#") == 4
