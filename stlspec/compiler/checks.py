@@ -83,6 +83,8 @@ def _units(inference: Inference) -> dict[str, Dimension | None]:
         units[name] = _unit_of(inference, statement)
     for unit in units.values():
         inference.quantities.known |= set(unit or ())
+    for text in inference.lost_units:
+        inference.quantities.known |= set(dimension(text) or ())
     return units
 
 
@@ -156,13 +158,14 @@ def _type_of(inference: Inference, statement: SignalStatement) -> str:
     if statement.type is None or statement.type.text in _TYPES:
         return statement.type.text if statement.type else "real"
     inference.problems.append(_choice(inference.source, statement.type, "a type", _TYPES))
-    return "real"
+    return closest(statement.type.text, _TYPES, 0.5) or "real"
 
 
 def _choice(source: SourceText, name: Name, what: str, allowed: tuple[str, ...]) -> Diagnostic:
     close = closest(name.text, allowed, 0.5)
     way = f"did you mean `{close}`?" if close else f"write one of {', '.join(allowed)}"
-    return diagnostic("T205", source=source, span=name.span, what=f"`{name.text}` is not {what}", help=way)
+    edits = (Edit(name.span, close),) if close else ()
+    return diagnostic("T205", source=source, span=name.span, edits=edits, what=f"`{name.text}` is not {what}", help=way)
 
 
 def _range_of(

@@ -171,6 +171,8 @@ def _values(source: SourceText, declared: Declared, column: Column) -> list[Diag
     """Report the first value that a column cannot hold."""
     signal = declared.signals.get(column.name.text)
     is_bool = signal is not None and signal.type is not None and signal.type.text == "bool"
+    if signal is not None and signal.type is not None and signal.type.text not in ("bool", "real"):
+        return []
     for sample in column.samples:
         if isinstance(sample, Truth) and not is_bool:
             way = "write numbers, or declare the signal `: bool`"

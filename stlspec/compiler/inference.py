@@ -34,7 +34,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import SPELLINGS, Dimension, dimension
+from stlspec.lang.units import NANOSECONDS, SPELLINGS, Dimension, dimension
 from stlspec.source import Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
@@ -58,6 +58,12 @@ MANY_PROBLEMS = 300
 SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
 """Operators whose operands are brought to one unit."""
 
+_FOR_FORMULAS = {
+    **dict.fromkeys(("==", "!="), "use `iff` to say that two formulas agree"),
+    **dict.fromkeys(("=>", "<="), "for `implies` write `->`; to compare, both sides are numbers"),
+    "-": "`-` takes a number; to negate a formula write `not`",
+}
+
 
 class Inference:
     """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
@@ -66,6 +72,7 @@ class Inference:
         self._seen_by: dict[int, frozenset[str]] = {}
         self.enter(syntax)
         self.declared = declared
+        self.lost_units = frozenset[str]().union(*(file.lost.units for file in (syntax, *syntax.used)))
         self.silent = silent
         self.problems = problems
         self.scope: dict[str, Typing] = {}
@@ -210,6 +217,9 @@ class Inference:
         name = node.function.text
         if self.sees(name):
             return self._report("N103", node.function.span, name=name, help=f"write `{name}` without arguments")
+        if self._unit_behind(node):
+            way = f"a unit stands behind each bound, inside the interval, as in `[0, 5 {name}]`"
+            return self._report("N103", node.function.span, name=name, help=way)
         # `let nearx, r) = ...`, which has lost a bracket, may have been meant to declare `near`.
         if self.nameless or any(lost.startswith(name) for lost in self.silent):
             return BROKEN
@@ -224,8 +234,13 @@ class Inference:
             if not self._need_real(node.operand, "-"):
                 return BROKEN
             return self._folded("neg", [below], below.unit, node.span)
-        self._window(node.operator)
+        if not (isinstance(node.operand, Call) and self._unit_behind(node.operand)):
+            self._window(node.operator)
         return self._need_formula(node.operand)
+
+    def _unit_behind(self, node: Call) -> bool:
+        """Tell whether `node` is `s (...)` behind an interval: a unit that belongs to its bounds, not a function."""
+        return node.function.text in NANOSECONDS and self.source.text[: node.span.start].rstrip().endswith("]")
 
     def _infix(self, node: Infix, below: list[Typing]) -> Typing:
         word = node.operators[0].word
@@ -296,19 +311,15 @@ class Inference:
 
     def _all_real(self, nodes: Sequence[Expression], what: str) -> bool:
         """Check the operands of one operator; the first wrong one is reported, since the cause is the operator."""
+        if any(self.typings[id(node)].kind == "broken" for node in nodes):
+            return False
         return all(self._need_real(node, what) for node in nodes)
 
     def _need_real(self, node: Expression, what: str) -> bool:
         kind = self.typings[id(node)].kind
         if kind == "formula":
-            way = (
-                "use `iff` to say that two formulas agree"
-                if what in ("==", "!=")
-                else f"compare or add numbers only; `{what}` takes numbers"
-            )
-            if what in ("=>", "<="):
-                way = "for `implies` write `->`; to compare, both sides are numbers"
-            self._report("T202", node.span, help=way)
+            way = f"compare or add numbers only; `{what}` takes numbers"
+            self._report("T202", node.span, help=_FOR_FORMULAS.get(what, way))
             self.typings[id(node)] = BROKEN
         return kind == "real"
 

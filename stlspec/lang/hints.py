@@ -7,18 +7,19 @@ Out: one diagnostic. Each habit or slip that can be told from the tokens has a f
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import pairwise
 
 from lark import Token
 
-from stlspec.errors import Diagnostic, Edit, Label, diagnostic
+from stlspec.errors import Diagnostic, Edit, Label
 from stlspec.lang.expected import expected, quoted
+from stlspec.lang.failure import Failure
 from stlspec.lang.spelling import closest
-from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, is_word
+from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
 from stlspec.lang.tree import span_of
-from stlspec.lang.units import is_unit_word
-from stlspec.source import SourceText, Span
+from stlspec.lang.units import NANOSECONDS, is_unit_word
+from stlspec.source import Span
 
 OPERATOR_WORDS = (
     "always eventually historically once until since unless release next prev wnext wprev not "
@@ -37,6 +38,8 @@ _CLOSES = frozenset(terminal for _, terminal in _CLOSING.values())
 _CLAUSE_WORDS = {"depends": "on", "scale": "NUMBER", "bound": "NAME"}
 _FOREIGN = frozenset({"input", "output", "const", "float", "specification"})
 """Words with which statements of RTAMT begin."""
+_COMPLETE = frozenset("NAME NUMBER STRING UNIT TRUE FALSE INF RPAR RSQB RBRACE COLON".split())
+"""Terminals behind which a line may well end."""
 _SIGNS = {
     "^": "**",
     "≥": ">=",
@@ -68,53 +71,6 @@ _SIGNS = {
 
 _PATH = re.compile(r"(?<![^\s{])[A-Za-z0-9_./~-]+\.[A-Za-z]\w*(?![^\s},])")
 """What looks like the path of a file."""
-
-
-@dataclass(frozen=True, slots=True)
-class Failure:
-    """A statement that cannot be parsed.
-
-    at: index of the token that does not fit; len(tokens) if the statement ends too early. expected: terminals
-    that fit there. brackets: the opening brackets still open. beginning: nothing before the token belongs to
-    its statement. names: what the text declares.
-    """
-
-    source: SourceText
-    tokens: tuple[Token, ...]
-    at: int
-    expected: frozenset[str]
-    brackets: tuple[Token, ...]
-    beginning: bool
-    names: frozenset[str]
-
-    @property
-    def token(self) -> Token | None:
-        """The token that does not fit; None at the end."""
-        return self.tokens[self.at] if self.at < len(self.tokens) else None
-
-    def place(self, token: Token) -> int:
-        """Return the index of a token; equal ones, such as two brackets, are told apart."""
-        return next(i for i, other in enumerate(self.tokens) if other is token)
-
-    @property
-    def span(self) -> Span:
-        """Where to point: at the token, or just behind the last one."""
-        if self.token is not None:
-            return span_of(self.token)
-        end = span_of(self.tokens[-1]).end
-        return Span(end, end)
-
-    def error(
-        self,
-        code: str,
-        *,
-        at: Span | None = None,
-        labels: tuple[Label, ...] = (),
-        edits: tuple[Edit, ...] = (),
-        **fields: str,
-    ) -> Diagnostic:
-        """Make the diagnostic `code` at `at`, or at the token that does not fit."""
-        return diagnostic(code, source=self.source, span=at or self.span, labels=labels, edits=edits, **fields)
 
 
 def describe(failure: Failure) -> Diagnostic:
@@ -282,7 +238,7 @@ def _text(failure: Failure, tokens: Sequence[Token]) -> str:
 def _stray_interval(failure: Failure) -> Diagnostic | None:
     """An interval behind something that takes none: `next[0, 5]`, `d[0, 5]`."""
     token, tokens = failure.token, failure.tokens
-    if token is None or tokens[0].type == "EXPECT":
+    if token is None or tokens[0].type in ("EXPECT", "SIGNAL"):
         return None
     if token.type == "LSQB":
         opening = failure.at
@@ -360,12 +316,35 @@ def _listed_names(failure: Failure) -> Diagnostic | None:
     return failure.error("S044", word=word, name=name)
 
 
+def _unit_behind(failure: Failure) -> Diagnostic | None:
+    """`[0, 5] s x > 1`: the unit of the bounds behind the interval."""
+    at, tokens = failure.at, failure.tokens
+    if at < 2 or tokens[at - 2].type != "RSQB" or str(tokens[at - 1]) not in NANOSECONDS:
+        return None
+    unit = tokens[at - 1]
+    found = failure.error("S001", at=span_of(unit), found=quoted(str(unit)), expected="a formula")
+    return replace(found, help=f"a unit stands behind each bound, inside the interval, as in `[0, 5 {unit}]`")
+
+
+def _cut_line(failure: Failure) -> Diagnostic | None:
+    """A line that ends where something must follow, before one that is no continuation: `depends on`, `a and`."""
+    at, tokens = failure.at, failure.tokens
+    if failure.token is None or at < 2 or not first_on_line(tokens, at) or "$END" in failure.expected:
+        return None
+    last = tokens[at - 1]
+    if last.type in _COMPLETE:
+        return None
+    fits, end = expected(failure.expected), span_of(last).end
+    way = f"write {fits} after {quoted(str(last))}"
+    return failure.error("S002", at=Span(end, end), what="line", last=quoted(str(last)), expected=fits, help=way)
+
+
 def _cut_off(failure: Failure) -> Diagnostic | None:
     """A statement that ends where something must follow."""
     if failure.token is not None:
         return None
-    last = str(failure.tokens[-1])
-    return failure.error("S002", last=quoted(last), expected=expected(failure.expected))
+    last, way = quoted(str(failure.tokens[-1])), "complete the statement here"
+    return failure.error("S002", what="statement", last=last, expected=expected(failure.expected), help=way)
 
 
 def _plain(failure: Failure) -> Diagnostic:
@@ -378,6 +357,8 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _late_clause,
     _no_statement,
     _glued_statement,
+    _unit_behind,
+    _cut_line,
     _reserved_name,
     _misspelt_operator,
     _misspelt_clause,

@@ -15,7 +15,8 @@ from lark import Token
 from stlspec.errors import Diagnostic, diagnostic
 from stlspec.lang.automaton import END, automaton
 from stlspec.lang.depth import DEEPEST, too_deep
-from stlspec.lang.hints import Failure, describe
+from stlspec.lang.failure import Failure
+from stlspec.lang.hints import describe
 from stlspec.lang.nodes import (
     Expression,
     RequirementStatement,

@@ -12,7 +12,7 @@ from lark import Token
 
 from stlspec.errors import Diagnostic, Edit, Fix
 from stlspec.lang.expected import quoted
-from stlspec.lang.hints import Failure
+from stlspec.lang.failure import Failure
 from stlspec.lang.statements import is_word
 from stlspec.lang.tree import span_of
 from stlspec.source import Span
@@ -28,6 +28,8 @@ _COMPARISONS = frozenset({"LT", "LE", "GT", "GE", "EQ", "NE", "ASSIGN"})
 _LOGIC = frozenset(
     {"AND", "AMPERSAND", "AMPERSANDS", "OR", "BAR", "BARS", "XOR", "IMPLIES", "ARROW", "FAT_ARROW", "IFF"}
 )
+_MUST_STAND = {"COLON": ":", "ASSIGN": "=", "ON": "on", "COMMA": ",", "UNIT_WORD": "unit", "IN": "in", "GE": ">="}
+"""Terminals with one spelling that a statement cannot do without, in the order in which they are tried."""
 _OPERANDS = frozenset({"NAME", "NUMBER", "STRING", "TRUE", "FALSE", "INF"})
 
 
@@ -39,13 +41,15 @@ def repaired(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:
     Args:    found: what `hints.describe` says of the failure. parses: tells whether tokens are a whole statement.
     Returns: the diagnostic, perhaps at a better place, with a fix if one was found.
     """
-    if len(failure.tokens) > _LONGEST or found.fixes:
+    if len(failure.tokens) > _LONGEST or found.fixes or (found.code == "S001" and found.help):
         return found
     match found.code:
         case "S001":
-            return _without(found, failure, parses)
-        case "S002":
+            return _with_sign(found, failure, parses) or _without(found, failure, parses)
+        case "S002" if failure.token is None:
             return _shortened(found, failure, parses)
+        case "S002":
+            return _line_shortened(found, failure, parses)
         case "S004":
             return _closed(found, failure, parses)
         case "S006" | "S019" | "S021":
@@ -67,6 +71,46 @@ def _removal(failure: Failure, start: int, end: int) -> Edit:
     first = span_of(failure.tokens[start - 1]).end if start else span_of(failure.tokens[0]).start
     gap = failure.source.slice(Span(first, span_of(failure.tokens[start]).start))
     return Edit(Span(first if not gap.strip(" \t") else span_of(failure.tokens[start]).start, last), "")
+
+
+def _with_sign(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic | None:
+    """Write a sign or a word that must stand here, in front of what stands here or in its place."""
+    at, tokens = failure.at, failure.tokens
+    missing = [(k, text) for k, text in _MUST_STAND.items() if k in failure.expected and not _compares(k, failure)]
+    for kind, text in missing:
+        if at and parses((*tokens[:at], _token(kind, text, tokens[at - 1]), *tokens[at:])):
+            end = span_of(tokens[at - 1]).end
+            edit = Edit(Span(end, end), text if text in ":," else f" {text}")
+            before = quoted(str(tokens[at - 1]))
+            return failure.error("S026", at=Span(end, end), edits=(edit,), missing=text, before=before)
+    if "STRING" in failure.expected and is_word(tokens[at]):
+        return _quoted(found, failure, parses)
+    for kind, text in missing:
+        if parses((*tokens[:at], _token(kind, text, tokens[at]), *tokens[at + 1 :])):
+            way = f"write `{text}` in place of {quoted(str(tokens[at]))}"
+            return _fixed(found, way, Edit(span_of(tokens[at]), text))
+    return None
+
+
+def _quoted(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic | None:
+    """Put quotes around a text that has none, up to the next blank: `unit m/s`."""
+    at, tokens = failure.at, failure.tokens
+    end = at + 1
+    while end < len(tokens) and span_of(tokens[end]).start == span_of(tokens[end - 1]).end:
+        end += 1
+    span = span_of(tokens[at]).to(span_of(tokens[end - 1]))
+    text = f'"{failure.source.slice(span)}"'
+    if '"' in text[1:-1] or not parses((*tokens[:at], _token("STRING", text, tokens[at]), *tokens[end:])):
+        return None
+    return replace(_fixed(found, f"write `{text}`", Edit(span, text)), span=span)
+
+
+def _compares(kind: str, failure: Failure) -> bool:
+    """Tell whether a sign would compare two numbers here, not begin a value or bound a margin."""
+    before = failure.tokens[: failure.at]
+    if kind == "ASSIGN":
+        return any(token.type in ("ASSIGN", "COLON") for token in before)
+    return kind == "GE" and before[-1].type != "MARGIN"
 
 
 def _without(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:
@@ -97,6 +141,16 @@ def _shortened(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnosti
             way = f"complete the statement here, or remove {quoted(' '.join(text.split()))}"
             return _fixed(found, way, _removal(failure, start, len(tokens)))
     return replace(found, help="complete the statement here")
+
+
+def _line_shortened(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:
+    """Leave out the last token of a line, behind which something is missing."""
+    at, tokens = failure.at, failure.tokens
+    last = tokens[at - 1]
+    if last.type in _COMPARISONS or not parses((*tokens[: at - 1], *tokens[at:])):
+        return found
+    way = f"remove {quoted(str(last))}, or write {found.label.removeprefix('expected ')} after it"
+    return _fixed(found, way, _removal(failure, at - 1, at))
 
 
 def _closed(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:

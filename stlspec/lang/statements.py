@@ -27,6 +27,8 @@ RESERVED = frozenset(
         "release next prev wnext wprev not and or xor implies iff true false inf"
     ).split()
 )
+_HEADER_WORDS = frozenset({"unit", "in", "from", "depends", "on", "scale", "bound"})
+"""Words of headers: in the place of a name that was lost, they are hardly names."""
 _WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*\Z")
 
 
@@ -137,12 +139,13 @@ class Lost:
     """What broken statements may have been meant to say.
 
     names: that they may declare. nameless: one of them lost its name altogether. time: one of them may be the
-    `time` statement.
+    `time` statement. units: the quoted texts of broken signals, of which one may be its unit.
     """
 
     names: frozenset[str] = frozenset()
     nameless: bool = False
     time: bool = False
+    units: frozenset[str] = frozenset()
 
 
 NOTHING_LOST = Lost()
@@ -154,6 +157,7 @@ def merged(parts: Sequence[Lost]) -> Lost:
         frozenset[str]().union(*(part.names for part in parts)),
         any(part.nameless for part in parts),
         any(part.time for part in parts),
+        frozenset[str]().union(*(part.units for part in parts)),
     )
 
 
@@ -175,11 +179,19 @@ def lost(broken: Sequence[Sequence[Token]]) -> Lost:
         frozenset(names),
         any(tokens[0].type in _RESERVED_STARTS and not _has_name(tokens) for tokens in broken),
         any(tokens[0].type not in _RESERVED_STARTS for tokens in broken),
+        frozenset(
+            str(token)[1:-1]
+            for tokens in broken
+            if tokens[0].type not in ("HARD", "SOFT", "LET", "EXPECT")
+            for token in tokens
+            if token.type == "STRING"
+        )
+        | frozenset(str(b) for tokens in broken for a, b in pairwise(tokens) if a.type == "UNIT_WORD"),
     )
 
 
 def _has_name(tokens: Sequence[Token]) -> bool:
     """Tell whether a broken declaration still has its name, perhaps behind something that does not belong there."""
-    words = [is_word(token) and str(token) not in RESERVED for token in tokens[1:3]]
+    words = [is_word(token) and str(token) not in RESERVED | _HEADER_WORDS for token in tokens[1:3]]
     fits = len(tokens) > 1 and tokens[1].type not in ("COLON", "STRING", "ASSIGN", "LPAR")
     return words[:1] == [True] or (fits and words[1:] == [True])

@@ -74,6 +74,7 @@ def test_an_argument_hides_a_let_of_the_same_name():
         ("hard a: true\nsoft b depends on a: true\nsoft c depends on b: true", []),
         ("soft a: true\nsoft b: true", []),
         ("hard a: true\nsoft b: true", ["G505"]),
+        ("hard a: true\nsoft b: true\nsoft c depends on b: true", ["G505"]),
         ("hard a: true\nsoft b depends on b: true", ["G503"]),
         ("hard a depends on b, c: true\nhard b: true", ["G502"]),
         ("hard a depends on b: true\nhard b depends on a: true", ["G501"]),

@@ -60,10 +60,10 @@ def test_a_slip_in_a_formula_has_its_code_its_place_and_its_way_out(formula, cod
         ("signal x in 0", "expected `[`"),
         ("param T = x", "expected a number"),
         ("time 5", "expected a unit"),
-        ("let p q", "expected `=`"),
+        ("let p q", "write `=` here"),
         ("let p = x > ,", "expected a number or a signal"),
-        ("hard a x > 1", "expected `:`, a quoted text, `depends on`, `scale` or `bound`"),
-        ("hard a depends b: x > 1", "expected `on`"),
+        ("hard a x > 1", "write `:` here"),
+        ("hard a depends b: x > 1", "write `on` here"),
         ("hard a: x > 1 5", "expected an operator or the end of the statement"),
         ("hard a: (x > 1 5)", "write `)` here"),
         ("hard a: always[] x > 1", "expected a number or a signal"),
@@ -87,6 +87,12 @@ def test_a_misspelt_statement_is_told_what_it_was_meant_to_be(word, meant):
     assert only(f"signal x\n{word} y = 1").help == f"did you mean `{meant}`?"
 
 
+def test_a_unit_behind_an_interval_is_told_its_place():
+    problem = only("signal x\nhard a: always[0, 5] ms x > 1")
+    assert (problem.code, problem.span.start) == ("S001", 30)
+    assert "inside the interval, as in `[0, 5 ms]`" in problem.help
+
+
 def test_a_line_that_is_no_statement_is_told_the_words():
     problem = only("always (x > 1)")
     assert problem.code == "S003"
@@ -103,7 +109,7 @@ def test_long_or_unprintable_text_is_shortened_in_messages():
     ("statement", "code", "says"),
     [
         ('expect a hold on "x"', "S018", "write `holds`"),
-        ('expect a holds "x"', "S001", "expected `on`"),
+        ('expect a holds "x"', "S026", "write `on` after `holds`"),
         ("expect a holds on x", "S001", "expected a quoted text or data in braces"),
         ('expect a holds on "x" margin > 3', "S001", "expected `>=`"),
         ('expect a holds on "x" at 3 at 4', "S020", "keep one of the two"),

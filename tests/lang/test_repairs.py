@@ -34,6 +34,17 @@ def only(text):
         ('signal x "distance', 'signal x "distance"'),
         ("time 100", "time 100 s"),
         ("param T =", "param T"),
+        ("hard a always (x > 1)", "hard a: always (x > 1)"),
+        ('hard a "A" = always (x > 1)', 'hard a "A" : always (x > 1)'),
+        ("soft a depends b: x > 1", "soft a depends on b: x > 1"),
+        ("soft a depends on b c: x > 1", "soft a depends on b, c: x > 1"),
+        ("signal x [0, 5]", "signal x in [0, 5]"),
+        ("signal x bool", "signal x: bool"),
+        ("let p x > 1", "let p = x > 1"),
+        ("param T 8 s", "param T = 8 s"),
+        ("expect a holds on {x = [1]}", "expect a holds on {x : [1]}"),
+        ("expect a holds on {x: [1]} margin 2", "expect a holds on {x: [1]} margin >= 2"),
+        ("hard a: (p and\n  ) or q", "hard a: (p\n  ) or q"),
     ],
 )
 def test_the_fix_clears_the_statement(broken, fixed):
@@ -42,7 +53,21 @@ def test_the_fix_clears_the_statement(broken, fixed):
     assert parse(SourceText.of("s", fixed)).diagnostics == ()
 
 
-@pytest.mark.parametrize("broken", ["hard a: not", "hard a: x >", "hard a:", "hard a: always[0, -x < 1", "let p q"])
+@pytest.mark.parametrize(
+    ("broken", "offset", "way"),
+    [
+        ("soft a depends on\n  always (x > 1)", 17, "write a name after `on`"),
+        ("soft a\n  always (x > 1)", 6, "write `:` after `a`"),
+        ("hard a: x >\n  and y < 1", 11, "write a number or a signal after `>`"),
+        ("hard a: always[0,\n  ] p", 17, "write a number or a signal after `,`"),
+    ],
+)
+def test_a_line_that_ends_too_early_is_blamed_not_the_next(broken, offset, way):
+    problem = only(broken)
+    assert (problem.span.start, problem.help) == (offset, way)
+
+
+@pytest.mark.parametrize("broken", ["hard a: not", "hard a: x >", "hard a:", "hard a: always[0, -x < 1"])
 def test_no_fix_is_offered_where_none_is_known(broken):
     assert only(broken).fixes == ()
 

@@ -58,6 +58,8 @@ def test_every_keyword_is_spelled_like_a_word_and_signs_are_not():
         ("sginal x", {"sginal", "x"}, False, True),
         ("x : bool", {"x", "bool"}, False, True),
         ("signal : bool", {"signal", "bool"}, True, False),
+        ('signal always unit "m"', {"signal", "unit"}, True, False),
+        ("hard scale 2 bound tanh: x > 1", {"scale"}, True, False),
         ("let § p = x > 1", {"let", "p"}, False, False),
         ("hard : x > 1", {"hard"}, True, False),
         ("tiem s", {"tiem", "s"}, False, True),
@@ -70,3 +72,8 @@ def test_what_a_broken_statement_may_have_declared_is_remembered(text, names, na
     assert (lost.nameless, lost.time) == (nameless, time)
     assert lost.names >= names
     assert lost == NOTHING_LOST or names
+
+
+@pytest.mark.parametrize("text", ['signal x unit "ppm" in [0', "signal x unit ppm in [0, 1]", 'sginal x unit "ppm"'])
+def test_the_unit_of_a_broken_signal_is_remembered(text):
+    assert "ppm" in parse(SourceText.of("s", text)).lost.units
