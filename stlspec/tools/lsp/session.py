@@ -71,11 +71,12 @@ class _Session:
     def run(self) -> int:
         """Handle messages until the editor leaves, or its stream ends."""
         while not self._out.broken:
-            if self._pending and time.monotonic() >= self._due():
+            if self._pending and time.monotonic() >= self._since + PATIENCE:
                 self._publish()
             try:
-                message = self._inbox.get(max(0.0, self._due() - time.monotonic()) if self._pending else None)
+                message = self._inbox.get(self._rest() if self._pending else None)
             except queue.Empty:
+                self._publish()
                 continue
             if message is END:
                 log("the editor has gone without `exit`")
@@ -86,8 +87,9 @@ class _Session:
             self._note_change()
         return 0 if self._server.stopping else 1
 
-    def _due(self) -> float:
-        return min(self._last + QUIET, self._since + PATIENCE)
+    def _rest(self) -> float:
+        """Return for how many seconds no message may come before diagnostics are worked out."""
+        return max(0.0, min(self._last + QUIET, self._since + PATIENCE) - time.monotonic())
 
     def _note_change(self) -> None:
         if self._server.changed:

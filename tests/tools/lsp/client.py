@@ -14,7 +14,7 @@ import threading
 
 from stlspec.tools.lsp.session import serve
 
-PATIENCE = 20
+PATIENCE = 60
 
 
 class RefusedError(Exception):

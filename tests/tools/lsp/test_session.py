@@ -161,7 +161,7 @@ class Pair:
 
     def end(self):
         os.close(self.sink)
-        self.thread.join(10)
+        self.thread.join(60)
         return self.code
 
 
@@ -185,7 +185,7 @@ def test_an_editor_that_no_longer_reads_ends_the_server(capfd):
 
     pair = Pair(gone)
     pair.send(INITIALIZE)
-    pair.thread.join(10)
+    pair.thread.join(60)
     assert pair.end() == 1
     assert "the editor has gone" in capfd.readouterr().err
 
@@ -200,7 +200,7 @@ def test_a_request_taken_back_while_it_waits_is_not_worked_on(monkeypatch):
             taken_back.set()
 
     def handled(self, message):
-        taken_back.wait(10)
+        taken_back.wait(60)
         handle(self, message)
 
     monkeypatch.setattr(transport.Inbox, "_note", noted)
@@ -225,7 +225,7 @@ def test_a_fault_of_ours_is_an_answer_and_a_line_in_the_log(monkeypatch):
     item = {"uri": URI, "languageId": "stlspec", "version": 1, "text": TEXT}
     pair = Pair()
     pair.send(INITIALIZE, {"method": "textDocument/didOpen", "params": {"textDocument": item}}, {"id": 1, **HOVER})
-    assert said.wait(10)
+    assert said.wait(60)
     pair.send({"id": 2, "method": "shutdown"}, {"method": "exit"})
     assert pair.end() == 0
     assert b"a fault of stlspec: ZeroDivisionError" in pair.written
