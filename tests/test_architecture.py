@@ -10,8 +10,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "stlspec"
 ORDER = (
-    "source errors lang compiler markup traces semantics documents api envs readers demos sampling binding formulas "
-    "scores many rewards wrapper gym learning paper pictures pages report tools cli __main__"
+    "source errors lang compiler markup columns traces semantics documents api envs readers demos sampling binding "
+    "formulas scores many rewards wrapper gym learning paper pictures pages report tools cli __main__"
 ).split()
 LIGHT = ("numpy", "networkx", "gymnasium", "rich", "typer", "lark", "matplotlib")
 LATE = {
