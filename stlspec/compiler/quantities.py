@@ -20,16 +20,21 @@ Unit = Dimension | Typing | None
 
 SAME = Fraction(1)
 """The factor between equal units."""
+_HIGHEST_POWER = 4
+"""Powers of time above this are compared, not converted: the factors would be no numbers that one can read."""
 
 
 def conversion(unit: Dimension | None, to: Dimension | None) -> Fraction | None:
-    """Return the factor from `unit` to `to`: 1 if equal or open, a ratio between times, None if there is none."""
+    """Return the factor from `unit` to `to`: 1 if equal or open, a ratio between their times, None if there is none.
+
+    `m/s/ms`, the rate of a speed sampled in ms, is 1000 times `m/s**2`: all but the times must be equal.
+    """
     if unit is None or to is None or unit == to:
         return SAME
-    one, other = _time_word(unit), _time_word(to)
-    if one is None or other is None:
+    one, other = _without_times(unit), _without_times(to)
+    if one != other or abs(one[1]) > _HIGHEST_POWER:
         return None
-    return Fraction(NANOSECONDS[one], NANOSECONDS[other])
+    return _nanoseconds(unit) / _nanoseconds(to)
 
 
 def scaled(value: float, factor: Fraction) -> float:
@@ -42,12 +47,19 @@ def scaled(value: float, factor: Fraction) -> float:
         return math.copysign(math.inf, value)
 
 
-def _time_word(unit: Dimension) -> str | None:
-    """Return the word of a plain time unit such as `ms`; None for any other."""
-    if len(unit) != 1:
-        return None
-    word, power = next(iter(unit.items()))
-    return word if power == 1 and word in NANOSECONDS else None
+def _without_times(unit: Dimension) -> tuple[dict[str, int], int]:
+    """Return what is left of a unit without its times, and the power of time in it."""
+    rest = {word: power for word, power in unit.items() if word not in NANOSECONDS}
+    return rest, sum(power for word, power in unit.items() if word in NANOSECONDS)
+
+
+def _nanoseconds(unit: Dimension) -> Fraction:
+    """Return how much of the unit in nanoseconds one of `unit` is, whatever else is in it."""
+    product = Fraction(1)
+    for word, power in unit.items():
+        if word in NANOSECONDS:
+            product *= Fraction(NANOSECONDS[word]) ** power
+    return product
 
 
 def _shown(unit: Dimension | None) -> str:

@@ -93,6 +93,8 @@ def override(
     for key, values in (("select", select), ("ignore", ignore)):
         if values is not None:
             names = tuple(part.strip().upper() for value in values for part in value.split(",") if part.strip())
+            if not names:
+                problems.append((f"--{key}: no code is given", "name codes, or how codes begin, such as `L6`"))
             wrong = [problem_with(name, hides=key == "ignore") for name in names]
             problems += [(f"--{key}: {w[0]}", w[1]) for w in wrong if w]
             given[key] = names

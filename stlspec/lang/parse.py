@@ -53,6 +53,8 @@ _NEVER_UNITS = frozenset({"SPEC", "USE", "TIME", "DEPENDS", "SCALE", "BOUND"})
 """Words that after a number begin a statement or a clause, in the wrong place: never units."""
 _OPENING = frozenset({"LPAR", "LSQB", "LBRACE"})
 _CLOSING = frozenset({"RPAR", "RSQB", "RBRACE"})
+_NOW = ("now", "t")
+"""Names that nothing declares: `5 m/now` divides by the time."""
 _GUESS = diagnostic("S001", found="", expected="")
 MOST_REPAIRS = 200
 """How many broken statements of a text are given a way out that was tried; trying costs time."""
@@ -346,13 +348,21 @@ class _Feed:
             sign, after = tokens[end], tokens[end + 1]
             glued = after.start_pos == sign.end_pos
             if not glued or not (
-                (sign.type == "SLASH" and is_unit_word(str(after))) or (sign.type == "POWER" and after.type == "NUMBER")
+                (sign.type == "SLASH" and self._divides(end + 1)) or (sign.type == "POWER" and after.type == "NUMBER")
             ):
                 break
             end += 2
         token = Token.new_borrow_pos("UNIT", "".join(tokens[i:end]), tokens[i])
         token.end_pos = tokens[end - 1].end_pos
         return token, end - i
+
+    def _divides(self, i: int) -> bool:
+        """Tell whether token `i`, glued behind `120 mg/`, is a part of the unit: no name, no call, and no word."""
+        token = self.tokens[i]
+        if is_unit_word(str(token)):
+            return True
+        called = i + 1 < len(self.tokens) and self.tokens[i + 1].type == "LPAR"
+        return token.type == "NAME" and not called and str(token) not in self.names and str(token) not in _NOW
 
     def _problem(self, i: int, *, beginning: bool = False) -> Diagnostic:
         """Describe a failure at token `i`, with a way out that works if there is one."""

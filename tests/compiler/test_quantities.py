@@ -1,7 +1,10 @@
 """Units: what may be joined, what a product is measured in, what is converted."""
 
+from fractions import Fraction
+
 import pytest
 
+import stlspec
 from stlspec.compiler.checks import check
 from stlspec.compiler.quantities import conversion, scaled
 from stlspec.lang.parse import parse
@@ -113,7 +116,20 @@ def test_conversion_exists_between_times_only():
     assert conversion({"s": 1}, {"ms": 1}) == 1000
     assert conversion({"m": 1}, {"m": 1}) == conversion(None, {"m": 1}) == 1
     assert conversion({"m": 1}, {"s": 1}) is None
-    assert conversion({"s": 2}, {"ms": 2}) is None
+    assert conversion({"s": 2}, {"ms": 2}) == 1_000_000
+    assert conversion({"s": 1}, {"ms": 2}) is conversion({"s": 9}, {"ms": 9}) is None
+
+
+def test_the_rate_of_a_speed_is_an_acceleration_whatever_the_time_is_measured_in():
+    assert conversion({"m": 1, "s": -1, "ms": -1}, {"m": 1, "s": -2}) == 1000
+    assert conversion({"m": 1, "s": -2}, {"m": 1, "s": -1, "ms": -1}) == Fraction(1, 1000)
+    assert conversion({"m": 1, "s": -2}, {"kg": 1, "s": -2}) is None
+
+
+def test_an_acceleration_limit_is_kept_in_the_unit_that_it_is_written_in():
+    bundle = stlspec.compile('time 10 ms\nsignal v unit "m/s"\nhard gentle: always (rate(v) <= 3 m/s**2)\n')
+    assert bundle.evaluate({"v": [0.0, 0.02, 0.04]})["gentle"].robustness == pytest.approx(0.001)  # m/s/ms
+    assert bundle.evaluate({"v": [0.0, 0.02, 0.06]})["gentle"].robustness == pytest.approx(-0.001)
 
 
 def test_a_unit_declared_for_a_signal_may_stand_behind_a_param_above_it():

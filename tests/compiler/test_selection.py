@@ -42,6 +42,10 @@ def test_the_nearest_settings_hold_and_the_command_line_goes_before_them(tmp_pat
     (tmp_path / "a" / "pyproject.toml").write_text("[project]\nname = 'a'\n")
     found = configured(inner / "x.stl")
     assert found == Selection(ignore=("L615",), deny=True, levels={"G5": "off"})
+    for given in ([""], [" , "]):
+        with pytest.raises(InputError) as refused:
+            override(found, given, None, None)
+        assert "no code is given" in refused.value.diagnostics[0].message
     assert override(found, None, ["G505, L60", "L61"], None).ignore == ("G505", "L60", "L61")
     assert override(found, ["L6"], None, None).ignore == ("L615",)
 
@@ -72,7 +76,7 @@ def test_settings_that_cannot_be_used_are_one_diagnostic(tmp_path, text, said):
 
 
 @pytest.mark.parametrize(
-    "options", [(["Z9"], None, None), (None, ["S001"], None), (None, None, ["error"]), ([""], ["L999"], None)]
+    "options", [(["Z9"], None, None), (None, ["S001"], None), (None, None, ["error"]), (["L6"], ["L999"], None)]
 )
 def test_options_that_cannot_be_used_are_refused(options):
     with pytest.raises(InputError) as caught:

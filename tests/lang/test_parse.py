@@ -7,6 +7,7 @@ import pytest
 
 from stlspec.compiler.compiling import check_source, compile_source
 from stlspec.errors import SpecError
+from stlspec.lang.nodes import Number, post_order
 from stlspec.lang.parse import DEEPEST, following, parse, parse_formula, tokens_of
 from stlspec.source import SourceText
 from tests.lang.generate import disagreement
@@ -207,3 +208,20 @@ def test_what_fits_behind_the_beginning_of_a_statement(text, fits, not_):
 def test_a_declared_alias_is_a_name_where_it_is_typed():
     tokens = tokens_of(SourceText.of("s", "hard a: G"))
     assert "AND" in following(tokens, frozenset({"G"}))
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("x > 120 mg/dL", "mg/dL"),
+        ("x > 120 mg/dL**2 and x < 3", "mg/dL**2"),
+        ("x > 3 m/k", "m"),
+        ("x > 3 m/now", "m"),
+        ("x > 3 m/abs(x)", "m"),
+        ("x > 3 m/ dL", "m"),
+    ],
+)
+def test_a_unit_takes_what_is_glued_to_it_and_is_no_name(text, unit):
+    syntax = parse(SourceText.of("s", f"signal x\nparam k = 2\nhard a: {text}\n"))
+    (number,) = [n for s in syntax.statements[2:] for n in post_order(s.formula) if isinstance(n, Number) and n.unit]
+    assert number.unit.text == unit
