@@ -8,6 +8,7 @@ is checked like any other input. Whatever stands in the way of a measurement is 
 
 import contextlib
 import math
+import os
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -39,6 +40,8 @@ MOST_DENSE = 2**27
 """Entries, 1 GiB: larger transition tables are given to imitation in sparse form, which is faster."""
 
 _LOADING = 120.0
+_ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+# as ours has one; tables this small gain nothing by more, and on a machine with other work threads wait for each other
 _LARGEST_ANSWER = 64 * 2**20
 _ENDINGS = ("converged", "steps", "seconds")
 _ABSENT = "its libraries are not installed: python -m stlspec.paper.libraries"
@@ -175,7 +178,7 @@ def ask(
             # The script ends when its input does: should this process be killed, the system closes the pipe.
             process = subprocess.Popen(  # noqa: S603 - an interpreter that the user made, and our own script
                 [str(python), "-I", str(script or SCRIPT), str(problem), str(answer)],
-                stdin=subprocess.PIPE, stdout=errors, stderr=errors, cwd=folder,
+                stdin=subprocess.PIPE, stdout=errors, stderr=errors, cwd=folder, env=os.environ | _ONE_THREAD,
             )  # fmt: skip
             code = _wait(process, _LOADING + 2 * seconds if limit is None else limit)
         if code:

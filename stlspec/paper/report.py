@@ -9,10 +9,11 @@ from typing import Any
 
 from stlspec.paper import tables
 from stlspec.paper.claims import CLAIMS, Results, Verdict, judge, rows_of
-from stlspec.paper.experiments import PLAIN, STANDARD
+from stlspec.paper.experiments import PLAIN, STANDARD, rows_from_json
 from stlspec.paper.handmade import BY_DISTANCE
 from stlspec.paper.journal import Record
 from stlspec.paper.spread import short
+from stlspec.paper.worth import NOTHING
 
 TITLE = "Learning from Demonstrations using Signal Temporal Logic, reproduced"
 
@@ -131,10 +132,28 @@ def sections(results: Results) -> list[tuple[str, str]]:
         if name in results:
             text = tables.learning(rows_of(results, name), against)
             found.append((heading, f"{text}\n\n{NOTES[name]}" if name in NOTES else text))
+    if "rewards" in results:
+        found.append(("What the reward of MCE-IRL is good for", _rewards(results["rewards"])))
     if "letter" in results:
         found.append(("Algorithm 2 as printed", tables.letter(rows_of(results, "letter"))))
     cars = {group: by for name in results if name.startswith("car-") for group, by in rows_of(results, name).items()}
     return [*found, ("Mountain Car", tables.car(cars))] if cars else found
+
+
+def _rewards(result: Mapping[str, Any]) -> str:
+    lines = [f"- {name}: {note}." for name, note in result["notes"].items()]
+    parts = ["How MCE-IRL was trained:", "\n".join(lines)]
+    if result["asked"]:
+        parts += [
+            "What the best policy for a reward alone does: worked out exactly, the goal absorbing, judged by the spec.",
+            tables.asked_for(result["asked"]),
+            "What a reward does for the learner, shaped by it, with the same bad demonstrations for the mask. A reward "
+            "that says nothing shapes too: hope makes the learner try what it has not tried.",
+            tables.learning(rows_from_json(result["rows"]), NOTHING),
+            "What MCE-IRL does better: it needs no spec, takes chance into account, and has a value for every state. "
+            "What it does not know is what must not happen: no expert showed it.",
+        ]
+    return "\n\n".join(parts)
 
 
 def _table_1_notes(results: Results) -> str:

@@ -171,3 +171,17 @@ def few(result: Mapping[str, Any]) -> str:
 
 def _signed(value: float | None) -> str:
     return NOT_MEASURED if value is None else f"{value:+.2f}"
+
+
+def asked_for(asked: Mapping[str, Mapping[str, Mapping[str, Any]]]) -> str:
+    """Write what the policies do that are best for a reward alone, see `worth.asked_for`."""
+    head = ["", "reward", "demonstrated map", "unseen maps", "hard met", "goal reached", "all met"]
+    lines = [
+        [
+            case_of(name).title, method, "all met" if found["home"]["all"] else "not all met", str(found["maps"]),
+            *(str(found[key]) for key in ("hard", "reached", "all")),
+        ]
+        for name, by in asked.items()
+        for method, found in by.items()
+    ]  # fmt: skip
+    return table(head, lines)

@@ -100,3 +100,19 @@ def test_unseen_maps_move_the_holes_and_nothing_else(name):
     for rows in maps:
         assert len(cells(rows, "H")) == len(cells(home, "H"))
         assert cells(rows, "SG") == cells(home, "SG")
+
+
+def test_the_reward_of_mce_irl_is_put_to_use_where_it_was_found(made, monkeypatch):
+    def answer(case, experts, *, iterations, seconds):
+        if case.name == "grid-7":
+            return IrlResult("no network")
+        assert (len(experts), iterations, seconds) == (800, 3, 4.0)
+        return IrlResult(None, 3, 3, 0.5, reward=tuple(map(float, range(64))), note="converged")
+
+    monkeypatch.setattr("stlspec.paper.experiments.measure", answer)
+    found = run("rewards", made)
+    assert found["notes"] == {"grid-7": "no network", "lake-8": "converged"}
+    assert {name: by["STL reward"]["maps"] for name, by in found["asked"].items()} == {"lake-8": 2}
+    rows = rows_from_json(found["rows"])
+    assert list(rows) == ["lake-8, demonstrated", "lake-8, unseen 1", "lake-8, unseen 2"]
+    assert all(len(found) == 2 for by in rows.values() for found in by.values())

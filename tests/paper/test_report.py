@@ -61,3 +61,24 @@ def test_a_report_of_nothing_says_so():
     text = report.write({})
     assert "Nothing was measured." in text
     assert f"{len(CLAIMS)} claims: {len(CLAIMS)} not measured." in text
+
+
+def test_the_reward_of_mce_irl_is_shown_beside_ours_and_nothing(made):
+    away = {"home": {"all": True}, "maps": 20, "hard": 12, "reached": 20, "all": 11}
+    rows = made.as_json(
+        {"lake-8, demonstrated": {"STL reward": made.rows(100, 100), "no information": made.rows(200, 200)}}
+    )
+    result = {
+        "rows": rows,
+        "asked": {"lake-8": {"STL reward": away}},
+        "notes": {"lake-8": "converged", "grid-7": "absent"},
+    }
+    text = report.write({"rewards": made.record("rewards", result)})
+    assert "## What the reward of MCE-IRL is good for" in text
+    assert "- grid-7: absent." in text
+    assert "What MCE-IRL does better" in text
+    nothing = report.write(
+        {"rewards": made.record("rewards", {"rows": {}, "asked": {}, "notes": {"lake-8": "absent"}})}
+    )
+    assert "- lake-8: absent." in nothing
+    assert "does better" not in nothing

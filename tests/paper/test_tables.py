@@ -76,3 +76,11 @@ def test_more_and_more_demonstrations_are_listed(made):
     assert cells(tables.few({"counts": [3, 70], "rows": rows}))[2:] == [
         ["3", "-0.25", "4 s"], ["70", "not measured", "not measured"],
     ]  # fmt: skip
+
+
+def test_what_rewards_ask_for_is_a_row_for_each():
+    found = {"home": {"all": True}, "maps": 20, "hard": 12, "reached": 20, "all": 11}
+    other = found | {"home": {"all": False}}
+    lines = cells(tables.asked_for({"lake-8": {"STL reward": found, "MCE-IRL reward": other}}))
+    assert lines[2] == ["FrozenLake-8", "STL reward", "all met", "20", "12", "20", "11"]
+    assert lines[3][:3] == ["FrozenLake-8", "MCE-IRL reward", "not all met"]
