@@ -145,7 +145,8 @@ def _rewards(result: Mapping[str, Any]) -> str:
     parts = ["How MCE-IRL was trained:", "\n".join(lines)]
     if result["asked"]:
         parts += [
-            "What the best policy for a reward alone does: worked out exactly, the goal absorbing, judged by the spec.",
+            "What the best policy for a reward alone does: planned with the known transitions of each map, the goal "
+            "absorbing, judged by the spec.",
             tables.asked_for(result["asked"]),
             "What a reward does for the learner, shaped by it, with the same bad demonstrations for the mask. A reward "
             "that says nothing shapes too: hope makes the learner try what it has not tried.",
