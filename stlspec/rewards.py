@@ -23,6 +23,7 @@ from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic
 from stlspec.markup.figures import standalone
 from stlspec.markup.grids import Board, board_svg
+from stlspec.sampling import OnNan
 from stlspec.scores import (
     DemonstrationScore,
     Label,
@@ -187,13 +188,18 @@ class RankedStates:
 
 
 def ranked_states(
-    bundle: BundleData, demonstrations: Iterable[Demonstration], environment: Environment | None = None
+    bundle: BundleData,
+    demonstrations: Iterable[Demonstration],
+    environment: Environment | None = None,
+    *,
+    on_nan: OnNan = "refuse",
+    resample: int | None = None,
 ) -> tuple[RankedStates, ...]:
     """Score demonstrations and give values to their states.
 
-    Paper: Algorithm 1, lines 3 to 12. Arguments and errors as for `infer_reward`.
+    Paper: Algorithm 1, lines 3 to 12. Arguments and errors as for `infer_reward`; on_nan, resample: as for `score`.
     """
-    evaluated = evaluate_demonstrations(bundle, demonstrations, environment)
+    evaluated = evaluate_demonstrations(bundle, demonstrations, environment, on_nan=on_nan, resample=resample)
     ranking = rank_demonstrations(bundle, evaluated)
     return tuple(
         _ranked(bundle, _with_bins_of(environment, bound), evaluation, score)

@@ -210,7 +210,8 @@ def _score_all(
     if draw is not None:
         draw(bundle, ranking, explanations)
     if page is not None:
-        _write_page(page, score_page(bundle, ranking, loaded, environment))
+        sampling = {key: options[key] for key in ("on_nan", "resample")}
+        _write_page(page, score_page(bundle, ranking, loaded, environment, **sampling))
     return ranking, explanations
 
 

@@ -16,6 +16,7 @@ from stlspec.markup.elements import Markup, element, number
 from stlspec.markup.grids import Board, board_svg
 from stlspec.markup.tables import cell, table
 from stlspec.rewards import ranked_states, reward_of
+from stlspec.sampling import OnNan
 from stlspec.scores import Ranking
 
 _MOST_STATES = 30
@@ -35,11 +36,16 @@ class RewardView:
 
 
 def reward_view(
-    bundle: BundleData, ranking: Ranking, demonstrations: Sequence[Demonstration], environment: Environment | None
+    bundle: BundleData,
+    ranking: Ranking,
+    demonstrations: Sequence[Demonstration],
+    environment: Environment | None,
+    on_nan: OnNan = "refuse",
+    resample: int | None = None,
 ) -> RewardView:
     """Infer the reward, as far as the data allow.
 
-    Paper: Algorithm 1. Returns: the values; or why there are none, in words.
+    Paper: Algorithm 1. on_nan, resample: as the ranking was made. Returns: the values; or why there are none, in words.
     """
     if not demonstrations:
         return RewardView("There are no demonstrations to infer it from.")
@@ -47,8 +53,8 @@ def reward_view(
         return RewardView("It is inferred from whole demonstrations whose labels are all decided.")
     try:
         # Most often all demonstrations lack states, or none does; so the first one tells at once.
-        ranked_states(bundle, demonstrations[:1], environment)
-        ranked = ranked_states(bundle, demonstrations, environment)
+        ranked_states(bundle, demonstrations[:1], environment, on_nan=on_nan, resample=resample)
+        ranked = ranked_states(bundle, demonstrations, environment, on_nan=on_nan, resample=resample)
         reward = reward_of(bundle, ranked, environment)
     except InputError as error:
         found = error.diagnostics[0]

@@ -20,6 +20,7 @@ from stlspec.markup.tables import cell, heading, score_table, table
 from stlspec.pages.demonstration import MOST_EXPLAINED, demonstration_section
 from stlspec.pages.frame import document
 from stlspec.pages.reward import RewardView, reward_section, reward_view
+from stlspec.sampling import OnNan
 from stlspec.scores import Ranking
 
 MOST_BYTES = 12_000_000
@@ -37,16 +38,19 @@ def score_page(
     ranking: Ranking,
     demonstrations: Sequence[Demonstration] = (),
     environment: Environment | None = None,
+    *,
+    on_nan: OnNan = "refuse",
+    resample: int | None = None,
 ) -> str:
     """Write the report.
 
     Not in the paper: a report on Algorithm 1.
 
     Args:    ranking: of `demonstrations`. environment: as for `score`; without one that knows their states, and
-             where a label is open, the part on the reward says why there is none.
+             where a label is open, the part on the reward says why there is none. on_nan, resample: as it was made.
     Returns: an HTML document that needs nothing else.
     """
-    view = reward_view(bundle, ranking, demonstrations, environment)
+    view = reward_view(bundle, ranking, demonstrations, environment, on_nan, resample)
     order = ranking.best_first()
     sections = _sections(bundle, ranking, order, view)
     linked = {k for k, _ in sections}

@@ -48,3 +48,13 @@ def test_a_ranking_of_other_samples_gets_no_reward_of_these() -> None:
     )
     assert reward_view(bundle, stlspec.score(bundle, [made]), [made], None).values
     assert "as recorded" in reward_view(bundle, stlspec.score(bundle, [other]), [made], None).reason
+
+
+def test_the_reward_is_of_the_samples_that_the_ranking_was_made_of() -> None:
+    bundle = stlspec.compile("time s\n" + SPEC)
+    cells = [[0, 0], [0, 0], [0, 1], [0, 2]]
+    demos = [make_demonstration("d", states=cells, time=[0.0, 0.7, 1.0, 2.0], env=WORLD)]
+    sampling = {"resample": 10**9}
+    view = reward_view(bundle, stlspec.score(bundle, demos, **sampling), demos, None, **sampling)
+    assert view.reason == "" and sorted(view.values) == [0, 1, 2]
+    assert view.paths[0].path == (0, 1, 2)  # at 0, 1 and 2 s
