@@ -218,7 +218,8 @@ CODES: tuple[Code, ...] = (
         "a file that is too large",
         "error",
         message="the file is too large: {size} bytes, at most {limit} are read",
-        help="split the recording, keep only the signals that the spec names, or write NPZ",
+        help="split the recording, keep only the signals that the spec names, or write NPZ; one recording as CSV is "
+        "scored at any size by `stlspec score SPEC - < FILE`",
         explanation="Sizes are bounded before anything is read, so that a damaged or hostile file cannot "
         "fill the memory. For a compressed file the size after unpacking counts.",
         bad="# an NPZ file of 1 MB that unpacks to 1 TB",

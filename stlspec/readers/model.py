@@ -86,13 +86,12 @@ def required_file(file: Path, expected: str, at_most: int | None = None) -> None
     try:
         if not file.is_file():
             here = file.exists()
-            reason = "it is a directory" if file.is_dir() else "it is no regular file"
-            raise refusal(
-                "D830",
-                file,
-                reason=reason if here else "there is no such file",
-                help="name the files inside it" if here else "check the path",
-            )
+            reason, way = "there is no such file", "check the path"
+            if file.is_dir():
+                reason, way = "it is a directory", "name the files inside it"
+            elif here:
+                reason, way = "it is no regular file", "CSV from a pipe is scored by `stlspec score SPEC - < PIPE`"
+            raise refusal("D830", file, reason=reason, help=way)
         size = file.stat().st_size
     except (OSError, ValueError) as error:
         raise _unreadable(file, error) from None
