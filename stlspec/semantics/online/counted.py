@@ -61,19 +61,15 @@ class Counted(Opening):
                 found.append(others[i])
         return found
 
-    def numbers(self, first: int, n: int) -> NDArray[np.int64]:
-        """Return the numbers of the samples from `first` to before `n`; not to be written to."""
+    def positions(self, first: int, n: int) -> tuple[NDArray[np.int64], Floats]:
+        """Return numbers and times of the samples from `first` to before `n`; not to be written to."""
         if not self._from <= first <= n <= self._from + len(self._numbers):
             self._from = first
             self._numbers = np.arange(first, n + max(1000, n - first))
             self._times = self._numbers / self._plan.base.ticks_per_unit
             self._numbers.flags.writeable = self._times.flags.writeable = False
-        return self._numbers[first - self._from : n - self._from]
-
-    def stamps(self, first: int, n: int) -> Floats:
-        """Return the times of these samples in the spec's unit."""
-        self.numbers(first, n)
-        return self._times[first - self._from : n - self._from]
+        row = slice(first - self._from, n - self._from)
+        return self._numbers[row], self._times[row]
 
     def load(self, state: Any) -> None:
         """Take over a saved state."""

@@ -126,7 +126,7 @@ class Monitor:
             return {name: _open(*columns) for name, columns in zip(names, found, strict=True)}
         opening = self._opening()
         return {
-            name: _open(opening.numbers(first, n), opening.stamps(first, n), columns)
+            name: _open(*opening.positions(first, n), columns)
             for name, (first, columns) in zip(names, opening.shown_samples(n), strict=True)
         }
 
@@ -150,7 +150,7 @@ class Monitor:
         found: list[Known] = []
         for requirement, (first, columns) in zip(self._bundle.requirements, opening.open_samples(n), strict=True):
             values = columns[2].tolist()
-            for i, (time, value) in enumerate(zip(opening.stamps(first, n).tolist(), values, strict=True)):
+            for i, (time, value) in enumerate(zip(opening.positions(first, n)[1].tolist(), values, strict=True)):
                 found.append(Known(first + i, time, requirement.name, shown(value), _verdict(value)))
         return found
 
@@ -229,7 +229,7 @@ def _columns(rows: Floats) -> Columns:
 def _open(samples: NDArray[np.int64], times: Floats, columns: Columns) -> Open:
     low, high, current = columns
     for column in (samples, times, low, high, current):
-        column.flags.writeable = False
+        column.setflags(write=False)
     return Open(samples, times, low, high, current)
 
 

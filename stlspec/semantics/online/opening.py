@@ -75,13 +75,10 @@ class Opening(Remembering):
             result.append((first, (shown(low), shown(high), shown(current))))
         return result
 
-    def numbers(self, first: int, n: int) -> NDArray[np.int64]:
-        """Return the numbers of the samples from `first` to before `n`."""
-        return np.arange(first, n)
-
-    def stamps(self, first: int, n: int) -> Floats:
-        """Return the times of these samples in the spec's unit, as given if they were given."""
-        return np.frombuffer(self.tape.columns[-1], dtype=np.float64)[first - self.tape.base :][: n - first].copy()
+    def positions(self, first: int, n: int) -> tuple[NDArray[np.int64], Floats]:
+        """Return numbers and times of the samples from `first` to before `n`, times as given if they were given."""
+        stamps = np.frombuffer(self.tape.columns[-1], dtype=np.float64)
+        return np.arange(first, n), stamps[first - self.tape.base :][: n - first].copy()
 
     def parts(self) -> list[Remembering]:
         """Return the objects that it consists of."""

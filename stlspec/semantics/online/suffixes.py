@@ -46,8 +46,6 @@ def latest(column: "array[float]", count: int) -> Floats:
 
     Not in the paper: it serves monitors.
     """
-    if count == 1:
-        return np.array([_visible(column[-1])])
     return shown(np.frombuffer(column, dtype=np.float64)[len(column) - count :])
 
 
@@ -56,6 +54,8 @@ class Suffixes:
 
     def __init__(self) -> None:
         self.first = self.end = 0
+        # One number as an array: quicker to take in than a scalar.
+        self._one = np.empty(1)
 
     def columns(self, tape: "Sequence[array[float]]", first: int, n: int) -> Columns:
         """Return low, high and current at the samples from `first` to before `n`, at least one.
@@ -63,6 +63,12 @@ class Suffixes:
         Args: tape: the operands' latest values, those up to sample `n` - 1.
         """
         raise NotImplementedError
+
+    def _newest(self, column: "array[float]") -> Floats:
+        """Return the newest value, ties as 0; it holds until the next call."""
+        value = column[-1]
+        self._one[0] = value if value > TIE or value < -TIE else 0.0
+        return self._one
 
     def _move(self, first: int, n: int) -> tuple[int, slice]:
         """Name the samples for the next call; return how many are new, and which of the last ones stay."""
@@ -81,6 +87,7 @@ class WindowSuffixes(Suffixes):
         self._kernel = windows.always if least else windows.eventually
         self._low, self._tail, self._least, self._certain = low, tail, least, certain
         self._suffixes: Floats = np.empty(0)
+        self._unknown: Floats = np.empty(0)
 
     def columns(self, tape: "Sequence[array[float]]", first: int, n: int) -> Columns:
         """Return low, high and current."""
@@ -93,23 +100,26 @@ class WindowSuffixes(Suffixes):
 
     def _within(self, column: "array[float]", first: int, n: int) -> Floats:
         new, stay = self._move(first, n)
-        if new:
-            values = latest(column, new)
-            if new > 1:
-                values = self._kernel(values, Grid(np.arange(new), 1), (0, None))
-            before = self._suffixes[stay]
-            found = np.empty(n - first)
-            self._extremum(before, values[0], out=found[: len(before)])
-            found[len(before) :] = values
-            self._suffixes = found
-        else:
-            self._suffixes = self._suffixes[stay]
-        return self._suffixes
+        before = self._suffixes[stay]
+        if new == 0:
+            self._suffixes = before
+            return before
+        values = self._newest(column) if new == 1 else self._within_new(latest(column, new))
+        self._suffixes = found = np.empty(n - first)
+        self._extremum(before, values[:1], out=found[:-new])
+        found[-new:] = values
+        return found
+
+    def _within_new(self, values: Floats) -> Floats:
+        return self._kernel(values, Grid(np.arange(len(values)), 1), (0, None))
 
     def _with_tail(self, values: Floats, side: int) -> Floats:
         bound = self._tail[side]
         if bound == -self._empty:
-            return np.full(len(values), bound)
+            if len(self._unknown) < len(values):
+                self._unknown = np.full(2 * len(values), bound)
+                self._unknown.flags.writeable = False
+            return self._unknown[: len(values)]
         return values if bound == self._empty else self._extremum(values, bound)
 
 

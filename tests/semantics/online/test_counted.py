@@ -35,8 +35,8 @@ def test_each_requirement_is_enclosed_at_its_open_samples():
 
 def test_numbers_and_times_are_views_that_move_on():
     opening = counted()
-    seen = [opening.numbers(first, first + 3) for first in (0, 1, 997, 998, 5000, 4)]
+    seen = [opening.positions(first, first + 3)[0] for first in (0, 1, 997, 998, 5000, 4)]
     assert [x.tolist() for x in seen] == [[f, f + 1, f + 2] for f in (0, 1, 997, 998, 5000, 4)]
-    assert opening.stamps(4, 6).tolist() == [4.0, 5.0]
+    assert opening.positions(4, 6)[1].tolist() == [4.0, 5.0]
     assert not seen[0].flags.writeable
-    assert opening.numbers(2, 2).tolist() == []
+    assert opening.positions(2, 2)[0].tolist() == []

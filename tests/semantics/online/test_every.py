@@ -39,7 +39,7 @@ def test_requirements_come_each_at_its_time(base, kind):
     assert type(opening) is kind
     assert opening.first_open(3) == [1, 1, 3, 0]
     assert [(first, len(columns[0])) for first, columns in opening.open_samples(3)] == [(1, 2), (1, 2), (3, 0), (0, 3)]
-    assert opening.stamps(1, 3).tolist() == [unit, 2 * unit]
+    assert opening.positions(1, 3)[1].tolist() == [unit, 2 * unit]
 
 
 def test_operators_are_shared():
