@@ -15,6 +15,7 @@ from lark import Token
 from stlspec.errors import Diagnostic, Edit, Label
 from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import Failure
+from stlspec.lang.habits import dotted, one_bound, round_range
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
 from stlspec.lang.tree import span_of
@@ -42,6 +43,7 @@ _COMPLETE = frozenset("NAME NUMBER STRING UNIT TRUE FALSE INF RPAR RSQB RBRACE C
 """Terminals behind which a line may well end."""
 _SIGNS = {
     "^": "**",
+    "%": "percent",
     "≥": ">=",
     "≤": "<=",
     "≠": "!=",
@@ -105,6 +107,9 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
         return failure.error("S006")
     braces = token.type in ("LBRACE", "RBRACE") and failure.tokens[0].type != "EXPECT"
     if token.type == "BAD_CHARACTER" or braces:
+        name = dotted(failure)
+        if name:
+            return failure.error("S005", character="`.`", help=f"a name has no dots: write `{name}`")
         sign = "," if str(token) == ";" and failure.brackets else _SIGNS.get(str(token))
         way = f"write `{sign}` in its place" if sign else "remove it; words and signs of the language are plain ASCII"
         return failure.error("S005", character=quoted(str(token)), help=way)
@@ -168,6 +173,9 @@ def _misspelt_operator(failure: Failure) -> Diagnostic | None:
         word = str(failure.tokens[i])
         if i < 3 or failure.tokens[i].type != "NAME" or word in failure.names:
             continue
+        if word == "if":
+            found = failure.error("S001", at=span_of(failure.tokens[i]), found="`if`", expected="a formula")
+            return replace(found, help="write `p implies q` for: if p then q")
         close = closest(word, OPERATOR_WORDS, 0.75)
         if close:
             span = span_of(failure.tokens[i])
@@ -363,6 +371,8 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _misspelt_operator,
     _misspelt_clause,
     _no_comma,
+    one_bound,
+    round_range,
     _open_interval,
     _stray_interval,
     _open_bracket,
