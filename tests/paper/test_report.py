@@ -51,6 +51,13 @@ def test_what_could_not_be_measured_says_why(made):
     assert "faster than MCE-IRL on every row of Table 1.** Not measured." in text
 
 
+def test_mountain_car_says_what_is_due_to_the_demonstrations(made):
+    cars = made.as_json({"car-50": {SHAPED: made.rows(5, probability=1.0)}})
+    text = report.write({"car-50": made.record("car-50", cars)})
+    assert "## Mountain Car" in text
+    assert "due to the demonstrations" in text
+
+
 def test_figures_are_shown_under_their_headings(made):
     text = report.write(records(made), ["map-grid-5.png", "steps-grids.png", "truth-grid-5.png"])
     assert text.index("## Rewards and ground truth") < text.index("![truth-grid-5](figures/truth-grid-5.png)")
