@@ -40,8 +40,8 @@ NOTES = {
     "success are mostly those of training the other order: they say nothing about the demonstrations.",
     "hand-crafted": "Sparse: +1 at the goal, -1 for a violation, -0.01 a step. By distance: besides, up to -0.1 a "
     "step, the farther from the goal it ends. The paper does not say which hand-crafted reward it compares with.",
-    "car": "Plain has the reward of the spec and no demonstrations, standard the environment's own -1 a step: what lies "
-    "between shaped and plain is due to the demonstrations, what lies between plain and standard to the reward.",
+    "car": "Plain has the reward of the spec and no demonstrations, standard the environment's own -1 a step: what "
+    "lies between shaped and plain is due to the demonstrations, what lies between plain and standard to the reward.",
     "lakes": "The paper's figures 4a and 4b show steps in each episode, without numbers in the text, so no ratio to "
     "its figures can be given. An episode that ends in a hole is short: steps per episode alone would flatter a "
     "method that falls into holes, which is why steps up to success are compared.",
