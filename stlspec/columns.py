@@ -6,6 +6,7 @@ a diagnostic that names the first value that is no number. What the values may b
 
 import struct
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -58,8 +59,10 @@ def _packed(values: Any) -> Any:
     if not isinstance(values, list | tuple) or not values or type(values[0]) not in (float, int, bool):
         return values
     try:
-        return np.frombuffer(struct.pack(f"{len(values)}d", *values))
-    except (TypeError, OverflowError, struct.error):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # a complex of numpy only warns that it loses its imaginary part
+            return np.frombuffer(struct.pack(f"{len(values)}d", *values))
+    except (TypeError, OverflowError, struct.error, Warning):
         return values
 
 
@@ -69,7 +72,7 @@ def _converted(values: ArrayLike, name: str, kind: str, numbers: Sequence[int], 
     result = np.empty(objects.shape)
     for at, value in np.ndenumerate(objects):
         try:
-            if isinstance(value, (str, bytes, complex)):
+            if isinstance(value, (str, bytes, complex, np.complexfloating)):
                 raise TypeError
             result[at] = value
         except (TypeError, ValueError, OverflowError):

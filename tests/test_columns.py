@@ -33,7 +33,16 @@ def test_a_column_is_a_copy():
 
 @pytest.mark.parametrize(
     ("values", "code"),
-    [(1.0, "D813"), ([[[1.0]]], "D813"), ([[1.0], [1.0, 2.0]], "D813"), ([1.0, [2.0]], "D813"), ([1.0, "2"], "D806")],
+    [
+        (1.0, "D813"),
+        ([[[1.0]]], "D813"),
+        ([[1.0], [1.0, 2.0]], "D813"),
+        ([1.0, [2.0]], "D813"),
+        ([1.0, "2"], "D806"),
+        ([1.0, 2j], "D806"),
+        ([1.0, np.complex128(2j)], "D806"),
+        ([np.complex64(1)], "D806"),
+    ],
 )
 def test_what_is_no_column_is_refused(values, code):
     with pytest.raises(DataError) as caught:
