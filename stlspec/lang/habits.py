@@ -29,6 +29,8 @@ def one_bound(failure: Failure) -> Diagnostic | None:
     """Describe `eventually[5] p`, an interval with one bound. Not in the paper: the language."""
     if failure.token is None or failure.token.type != "RSQB" or not {"COMMA", "COLON"} <= failure.expected:
         return None
+    if not failure.brackets or failure.brackets[-1].type != "LSQB":
+        return None
     opening = failure.place(failure.brackets[-1])
     bound = _text(failure, failure.tokens[opening + 1 : failure.at])
     start = span_of(failure.tokens[opening]).end

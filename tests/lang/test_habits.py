@@ -30,3 +30,7 @@ def test_habits_of_other_languages_are_told_the_way_here(statement, code, way):
 @pytest.mark.parametrize("text", ["signal x in (-1, 5)", "hard a: eventually[5 s] x > 1"])
 def test_the_fix_clears_it(text):
     assert parse(SourceText.of("s", only(text).fixes[0].applied(text))).diagnostics == ()
+
+
+def test_a_stray_bracket_among_requirements_is_no_interval_with_one_bound():
+    assert only("signal x\nhard a depends on b]: x > 1").code == "S019"
