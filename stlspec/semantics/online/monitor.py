@@ -165,6 +165,14 @@ class Monitor:
         objects.load(self._objects.save())
         return Monitor(self._bundle, self._program, objects)
 
+    def __copy__(self) -> "Monitor":
+        """Return what `copy` does: `update` holds on to the memory, which field by field would stay shared."""
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Monitor":
+        """Return what `copy` does, also for whoever copies an environment that holds a monitor."""
+        return self.copy()
+
     def to_bytes(self) -> bytes:
         """Return the monitor's memory as JSON, to be restored with `from_bytes`."""
         document = {

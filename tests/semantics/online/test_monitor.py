@@ -1,5 +1,6 @@
 """The monitor as a whole: its promises, on random formulas and by hand."""
 
+import copy
 import json
 import random
 import sys
@@ -472,3 +473,16 @@ def test_infinite_samples_are_values():
     monitor = make_monitor(bundle)
     assert monitor.update({"x": np.float32("inf")})["avoid"].high == INF
     assert monitor.update({"x": -INF})["avoid"] == Standing(-INF, -INF, -INF, "violated")
+
+
+@pytest.mark.parametrize("copied", [Monitor.copy, copy.copy, copy.deepcopy, lambda m: copy.deepcopy([m])[0]])
+@pytest.mark.parametrize("reading", ["start", "every"])
+def test_a_copy_goes_its_own_way_however_it_is_made(copied, reading):
+    monitor = make_monitor(spec(avoid), reading)
+    monitor.update({"x": 3.0})
+    other = copied(monitor)
+    before = monitor.to_bytes()
+    assert other.to_bytes() == before
+    other.update({"x": -1.0})
+    assert monitor.to_bytes() == before
+    assert other.n_samples == 2
