@@ -268,14 +268,30 @@ def _edge(
             there = declared.elsewhere[on.text]
             return diagnostic("N112", source=source, span=on.span, labels=(there,), name=on.text)
         close = closest(on.text, (n for n in declared.requirements if n != name)) if suggest else None
-        what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
-        way = f"did you mean `{close}`?" if close else f"remove {what}, or state `hard {on.text}: ...`"
-        edits = (Edit(on.span, close),) if close else _independent(source, requirement, on)
+        way = f"did you mean `{close}`?" if close else _instead(declared, requirement, on)
+        first = close or _first_hard(declared, requirement)
+        edits = (Edit(on.span, first),) if first else _independent(source, requirement, on)
         return diagnostic("G502", source=source, span=on.span, edits=edits, name=name, on=on.text, help=way)
     if requirement.strength == "hard" and other.strength == "soft":
         place = Label(other.name.span, "declared soft here", source)
         return diagnostic("G504", source=source, span=on.span, labels=(place,), name=name, on=on.text)
     return None
+
+
+def _first_hard(declared: Declared, requirement: RequirementStatement) -> str | None:
+    """Return what a soft requirement may depend on that depends on nothing else; None if that need not be."""
+    if requirement.strength == "hard" or len(requirement.depends_on) > 1:
+        return None
+    return next((name for name, other in declared.requirements.items() if other.strength == "hard"), None)
+
+
+def _instead(declared: Declared, requirement: RequirementStatement, on: Name) -> str:
+    """Say what to write for a dependency that is declared nowhere and like no other name."""
+    first = _first_hard(declared, requirement)
+    if first is not None:
+        return f"write `depends on {first}`, or state `hard {on.text}: ...`"
+    what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
+    return f"remove {what}, or state `hard {on.text}: ...`"
 
 
 def _independent(source: SourceText, requirement: RequirementStatement, on: Name) -> tuple[Edit, ...]:

@@ -10,8 +10,8 @@ from typing import Any
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
-from stlspec.errors import Diagnostic, Edit, diagnostic
-from stlspec.lang.nodes import Expression, Infix, Interval, Number
+from stlspec.errors import Diagnostic, Edit, Fix, diagnostic
+from stlspec.lang.nodes import Expression, Group, Infix, Interval, Number
 from stlspec.lang.units import NANOSECONDS, STEP, spell
 from stlspec.source import SourceText, Span
 
@@ -35,9 +35,8 @@ def ticks_of(
         problems.append(diagnostic(code, source=source, span=span, **fields))
 
     nodes = (interval.low, interval.high)
-    plain = [node for node, bound in zip(nodes, bounds, strict=True) if _lacks_unit(bound, time)]
-    if plain:
-        _report_plain(interval, plain, source, time, report)
+    if any(_lacks_unit(bound, time) for bound in bounds):
+        _report_plain(interval, bounds, source, time, report)
     for node, bound in zip(nodes, bounds, strict=True):
         if bound.unit is not None:
             _check_unit(bound, node, time, report)
@@ -70,25 +69,70 @@ def _lacks_unit(bound: Typing, time: TimeBase) -> bool:
 
 
 def _report_plain(
-    interval: Interval, plain: Sequence[Expression], source: SourceText, time: TimeBase, report: Report
+    interval: Interval, bounds: tuple[Typing, Typing], source: SourceText, time: TimeBase, report: Report
 ) -> None:
-    """Report the bounds of one interval that lack their unit, both at once."""
-    numbers = [number for node in plain for number in _terms(node)]
-    places = [n.span.end for n in numbers if isinstance(n, Number) and n.unit is None]
-    span = plain[0].span if len(plain) == 1 else interval.span
-    if len(places) < len(numbers):
-        way = f"give the numbers and params in it a unit, such as {time.unit}"
+    """Report the bounds of one interval that lack their unit, both at once, and in their order if they are reversed."""
+    nodes = (interval.low, interval.high)
+    unit = _unit_meant(bounds, time)
+    plain = [(node, bound) for node, bound in zip(nodes, bounds, strict=True) if _lacks_unit(bound, time)]
+    span = plain[0][0].span if len(plain) == 1 else interval.span
+    numbers = [number for node, _ in plain for number in _terms(node)]
+    ends = [n.span.end for n in numbers if isinstance(n, Number) and n.unit is None]
+    if len(ends) < len(numbers):
+        way = f"give the numbers and params in it a unit, such as {unit}"
         report("U303", span, unit=time.unit, help=way)
         return
-    edits = tuple(Edit(Span(end, end), f" {time.unit}") for end in places)
-    text = source.slice(span)
-    for end in reversed(places):
-        text = f"{text[: end - span.start]} {time.unit}{text[end - span.start :]}"
-    report("U303", span, unit=time.unit, edits=edits, help=f"write `{text}`")
+    texts = [_with_unit(source, node.span, ends, unit) for node in nodes]
+    low, high = (_ticks_meant(bound, unit) for bound in bounds)
+    if low is not None and high is not None and low > high:
+        texts.reverse()
+        span = interval.span
+    edits = tuple(Edit(n.span, new) for n, new in zip(nodes, texts, strict=True) if new != source.slice(n.span))
+    report("U303", span, unit=time.unit, edits=edits, help=f"write `{_edited(source, span, edits)}`")
+
+
+def _unit_meant(bounds: tuple[Typing, Typing], time: TimeBase) -> str:
+    """Return the unit to propose: that of the other bound, else the first, from that of the spec on, that fits.
+
+    It fits if the bounds are then whole numbers of periods: with `time 100 ms`, `[0, 5]` hardly means 5 ms.
+    """
+    written = [word for bound in bounds for word in bound.unit or () if word in NANOSECONDS]
+    if written:
+        return written[0]
+    larger = [word for word, ticks in NANOSECONDS.items() if ticks >= time.ticks_per_unit]
+    period = time.period
+    return time.unit if period is None else next((u for u in larger if _fits(bounds, u, period)), time.unit)
+
+
+def _fits(bounds: tuple[Typing, Typing], unit: str, period: int) -> bool:
+    """Tell whether bounds in a unit are whole numbers of periods, as far as they are known and end."""
+    ticks = [found for bound in bounds if (found := _ticks_meant(bound, unit)) is not None and math.isfinite(found)]
+    return all(round(found) % period == 0 for found in ticks)
+
+
+def _ticks_meant(bound: Typing, unit: str) -> float | None:
+    """Return a bound in ticks, in `unit` where it has none; None if it is not known."""
+    word = next(iter(bound.unit)) if bound.unit else unit
+    return bound.value * NANOSECONDS[word] if bound.value is not None and word in NANOSECONDS else None
+
+
+def _with_unit(source: SourceText, span: Span, ends: Sequence[int], unit: str) -> str:
+    """Return the text of a bound with a unit behind each number that ends at one of `ends`."""
+    return _edited(source, span, [Edit(Span(end, end), f" {unit}") for end in ends if span.start < end <= span.end])
+
+
+def _edited(source: SourceText, span: Span, edits: Sequence[Edit]) -> str:
+    """Return a stretch of the text with edits made that lie in it."""
+    by = span.start
+    return Fix("", tuple(Edit(Span(e.span.start - by, e.span.end - by), e.text) for e in edits)).applied(
+        source.slice(span)
+    )
 
 
 def _terms(node: Expression) -> list[Expression]:
     """Return the terms of a sum that need a unit each."""
+    if isinstance(node, Group):
+        return _terms(node.inner)
     if isinstance(node, Infix) and node.operators[0].word in ("add", "sub"):
         return [term for operand in node.operands for term in _terms(operand)]
     return [node]

@@ -87,6 +87,21 @@ def test_the_graph_of_requirements_is_checked(text, expected):
     assert codes(text) == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("soft b depends on nowhere: true", "remove `depends on nowhere`, or state `hard nowhere: ...`"),
+        ("hard a: true\nhard b depends on nowhere: true", "remove `depends on nowhere`, or state `hard nowhere: ...`"),
+        ("hard a: true\nsoft b depends on nowhere: true", "write `depends on a`, or state `hard nowhere: ...`"),
+        ("hard a: true\nsoft b depends on a, no: true", "remove `no` and its comma, or state `hard no: ...`"),
+    ],
+)  # fmt: skip
+def test_the_way_out_of_a_dependency_on_nothing_leaves_nothing_to_report(text, help_):
+    (problem,) = checked(text)[1]
+    assert (problem.code, problem.help) == ("G502", help_)
+    assert codes(problem.fixes[0].applied(text)) == []
+
+
 def test_a_hidden_problem_of_a_broken_spec_keeps_its_warnings_silent():
     assert codes("hard a: x >\nsignal x\nsoft b: x > 1") == ["S002"]
 

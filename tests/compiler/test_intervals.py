@@ -78,7 +78,17 @@ def test_a_wrong_interval_is_one_error_and_has_no_window(interval, time, code):
     [
         ("[5, 2]", "step", "write [2, 5]"),
         ("[0, 5]", "s", "write `5 s`"),
-        ("[0, 5]", "100 ms", "write `5 ms`"),
+        ("[0, 500]", "100 ms", "write `500 ms`"),
+        ("[0, 5]", "100 ms", "write `5 s`"),
+        ("[0.5, 2.5]", "100 ms", "write `[0.5 s, 2.5 s]`"),
+        ("[1, 2 + 3]", "30 s", "write `[1 min, 2 min + 3 min]`"),
+        ("[0, 0.3]", "7 h", "write `0.3 h`"),
+        ("[0, 1e305]", "7 ms", "write `1e305 ms`"),
+        ("[1, 5 s]", "ms", "write `1 s`"),
+        ("[5, 2]", "s", "write `[2 s, 5 s]`"),
+        ("[5, 2 s]", "ms", "write `[2 s, 5 s]`"),
+        ("[5,  2 - 1]", "100 ms", "write `[2 s - 1 s,  5 s]`"),
+        ("[5, 0]", "s", "write `[0, 5 s]`"),
         ("[0, 250 ms]", "100 ms", "write [0, 200 ms] to say so"),
         ("[0, 5 s]", "step", "write a number of samples or declare `time s`"),
     ],
@@ -87,3 +97,14 @@ def test_the_way_out_can_be_written_as_it_stands(interval, time, help_):
     text = f"time {time}\nsignal x\nhard a: always{interval} (x > 1)"
     (problem,) = check(parse(SourceText.of("s", text)))[1]
     assert problem.help == help_
+
+
+@pytest.mark.parametrize(
+    "interval", ["[5, 2]", "[0, 5]", "[5, 2 s]", "[1, 5 s]", "[3 - 1, 1]", "[0.5, 0]", "[(5), (2)]"]
+)
+@pytest.mark.parametrize("time", ["s", "ms", "100 ms", "500 ms"])
+def test_what_a_bound_without_a_unit_is_told_leaves_nothing_to_report(interval, time):
+    text = f"time {time}\nsignal x\nhard a: always{interval} (x > 1)"
+    (problem,) = check(parse(SourceText.of("s", text)))[1]
+    assert problem.code == "U303"
+    assert check(parse(SourceText.of("s", problem.fixes[0].applied(text))))[1] == ()
