@@ -3,6 +3,7 @@
 In: what the parser saw when it stopped. Out: a `Failure`, from which `hints` and `repairs` make one diagnostic.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from lark import Token
@@ -10,6 +11,14 @@ from lark import Token
 from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.tree import span_of
 from stlspec.source import SourceText, Span
+
+TEMPORAL = frozenset(
+    (
+        "ALWAYS G GLOBALLY ALW ALW_ EVENTUALLY F FINALLY EV EV_ HISTORICALLY H HIST HIST_ ONCE O ONCE_ "
+        "UNTIL U UNTIL_ SINCE S SINCE_ UNLESS W RELEASE R"
+    ).split()
+)
+"""Terminals of the words that take an interval."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +54,10 @@ class Failure:
             return span_of(self.token)
         end = span_of(self.tokens[-1]).end
         return Span(end, end)
+
+    def text(self, tokens: Sequence[Token]) -> str:
+        """Return the text from the first of `tokens` to the last."""
+        return self.source.slice(Span(span_of(tokens[0]).start, span_of(tokens[-1]).end))
 
     def error(
         self,

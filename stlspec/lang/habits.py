@@ -3,16 +3,60 @@
 In: a `Failure`. Out: the one diagnostic with its edits, or None where the habit is not what stopped the parser.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from lark import Token
-
 from stlspec.errors import Diagnostic, Edit
+from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import Failure
 from stlspec.lang.statements import is_word
 from stlspec.lang.tree import span_of
 from stlspec.source import Span
+
+_BEFORE_OPERATOR = frozenset("NAME NUMBER UNIT RPAR TRUE FALSE".split())
+"""Terminals that end an operand: a `|` behind one of them closes."""
+
+
+def habit(failure: Failure, way: str, *edits: Edit, at: Span | None = None, wanted: str = "") -> Diagnostic:
+    """Return the diagnostic of a habit; what is pointed at does not fit, and `way` says what does.
+
+    Not in the paper: the language.
+    """
+    span = at or failure.span
+    found = failure.error(
+        "S001",
+        at=span,
+        found=quoted(failure.source.slice(span)),
+        expected=wanted or expected(failure.expected),
+        edits=edits,
+    )
+    return replace(found, help=way, fixes=tuple(replace(fix, title=way) for fix in found.fixes))
+
+
+def bars(failure: Failure) -> Diagnostic | None:
+    """Describe `|x|`, the absolute value. Not in the paper: the language."""
+    at, tokens = failure.at, failure.tokens
+    if failure.token is None or failure.token.type != "BAR" or "LPAR" not in failure.expected:
+        return None
+    opened: int | None = None
+    edits: list[Edit] = []
+    first = ""
+    for i in range(at, len(tokens)):
+        if tokens[i].type != "BAR":
+            continue
+        if opened is None and (i == at or tokens[i - 1].type not in _BEFORE_OPERATOR):
+            opened = i
+        elif opened is not None and i > opened + 1:
+            edits += [Edit(span_of(tokens[opened]), "abs("), Edit(span_of(tokens[i]), ")")]
+            first = first or failure.text(tokens[opened + 1 : i])
+            opened = None
+    if not first:
+        return None
+    return habit(failure, f"write `abs({shortened(first)})`", *edits, wanted="a formula")
+
+
+def shortened(text: str) -> str:
+    """Return a text as `quoted` would, without the backticks. Not in the paper: it serves the messages."""
+    return quoted(" ".join(text.split()))[1:-1]
 
 
 def dotted(failure: Failure) -> str | None:
@@ -32,7 +76,7 @@ def one_bound(failure: Failure) -> Diagnostic | None:
     if not failure.brackets or failure.brackets[-1].type != "LSQB":
         return None
     opening = failure.place(failure.brackets[-1])
-    bound = _text(failure, failure.tokens[opening + 1 : failure.at])
+    bound = failure.text(failure.tokens[opening + 1 : failure.at])
     start = span_of(failure.tokens[opening]).end
     edits = (Edit(Span(start, start), "0, "),)
     found = failure.error("S001", found="`]`", expected="a second bound", edits=edits)
@@ -48,10 +92,6 @@ def round_range(failure: Failure) -> Diagnostic | None:
     comma = next((i for i in range(at, len(tokens)) if tokens[i].type in ("COMMA", "COLON")), None)
     if ends is None or comma is None or not at + 1 < comma < ends - 1:
         return None
-    low, high = _text(failure, tokens[at + 1 : comma]), _text(failure, tokens[comma + 1 : ends])
+    low, high = failure.text(tokens[at + 1 : comma]), failure.text(tokens[comma + 1 : ends])
     whole = span_of(tokens[at]).to(span_of(tokens[ends]))
     return failure.error("S025", at=whole, edits=(Edit(whole, f"[{low}, {high}]"),), low=low, high=high)
-
-
-def _text(failure: Failure, tokens: Sequence[Token]) -> str:
-    return failure.source.slice(Span(span_of(tokens[0]).start, span_of(tokens[-1]).end))

@@ -6,7 +6,7 @@ Out: one diagnostic. Each habit or slip that can be told from the tokens has a f
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -14,8 +14,10 @@ from lark import Token
 
 from stlspec.errors import Diagnostic, Edit, Label
 from stlspec.lang.expected import expected, quoted
-from stlspec.lang.failure import Failure
-from stlspec.lang.habits import dotted, one_bound, round_range
+from stlspec.lang.failure import TEMPORAL, Failure
+from stlspec.lang.habits import bars, dotted, one_bound, round_range
+from stlspec.lang.headers import blank_in_name, no_name, priority
+from stlspec.lang.phrases import PHRASES
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
 from stlspec.lang.tree import span_of
@@ -26,13 +28,6 @@ OPERATOR_WORDS = (
     "always eventually historically once until since unless release next prev wnext wprev not "
     "and or xor implies iff globally finally"
 ).split()
-_TEMPORAL = frozenset(
-    (
-        "ALWAYS G GLOBALLY ALW ALW_ EVENTUALLY F FINALLY EV EV_ HISTORICALLY H HIST HIST_ ONCE O ONCE_ "
-        "UNTIL U UNTIL_ SINCE S SINCE_ UNLESS W RELEASE R"
-    ).split()
-)
-"""Terminals of the words that take an interval."""
 _CLOSING = {"LPAR": (")", "RPAR"), "LSQB": ("]", "RSQB"), "LBRACE": ("}", "RBRACE")}
 """For each opening bracket the closing one, and its terminal."""
 _CLOSES = frozenset(terminal for _, terminal in _CLOSING.values())
@@ -59,6 +54,8 @@ _SIGNS = {
     "◇": "eventually",
     "⊤": "true",
     "⊥": "false",
+    "∀": "always",
+    "∃": "eventually",
     "∞": "inf",
     "·": "*",
     "×": "*",
@@ -218,7 +215,7 @@ def _open_interval(failure: Failure) -> Diagnostic | None:
     if token is None or not failure.brackets:
         return None
     opening = failure.place(failure.brackets[-1])
-    if not opening or tokens[opening - 1].type not in _TEMPORAL:
+    if not opening or tokens[opening - 1].type not in TEMPORAL:
         return None
     inside = tokens[opening + 1 :]
     ends = next((i for i, t in enumerate(inside) if t.type in ("RPAR", "RSQB")), None)
@@ -229,7 +226,7 @@ def _open_interval(failure: Failure) -> Diagnostic | None:
     elsewhere = token is not inside[comma] and token is not inside[ends]
     if closed or elsewhere or (tokens[opening].type == "LSQB" and _last_bound(failure, opening) is not None):
         return None
-    low, high = _text(failure, inside[:comma]), _text(failure, inside[comma + 1 : ends])
+    low, high = failure.text(inside[:comma]), failure.text(inside[comma + 1 : ends])
     whole = span_of(tokens[opening]).to(span_of(inside[ends]))
     edits = (Edit(whole, f"[{low}, {high}]"),)
     return failure.error("S025", at=whole, edits=edits, low=low, high=high)
@@ -237,10 +234,6 @@ def _open_interval(failure: Failure) -> Diagnostic | None:
 
 def _compares(token: Token) -> bool:
     return token.type in ("LT", "LE", "GT", "GE", "EQ", "NE", "ASSIGN")
-
-
-def _text(failure: Failure, tokens: Sequence[Token]) -> str:
-    return failure.source.slice(Span(span_of(tokens[0]).start, span_of(tokens[-1]).end))
 
 
 def _stray_interval(failure: Failure) -> Diagnostic | None:
@@ -255,7 +248,7 @@ def _stray_interval(failure: Failure) -> Diagnostic | None:
     else:
         return None
     before = tokens[opening - 1]
-    if not opening or not is_word(before) or before.type in _TEMPORAL or before.type == "IN":
+    if not opening or not is_word(before) or before.type in TEMPORAL or before.type == "IN":
         return None
     return failure.error("S024", at=span_of(tokens[opening]), word=str(before))
 
@@ -307,7 +300,7 @@ def _no_comma(failure: Failure) -> Diagnostic | None:
         return None
     tokens, opening = failure.tokens, failure.place(failure.brackets[-1])
     ends = next((i for i in range(failure.at, len(tokens)) if tokens[i].type == "RSQB"), failure.at + 1)
-    low, high = _text(failure, tokens[opening + 1 : failure.at]), _text(failure, tokens[failure.at : ends])
+    low, high = failure.text(tokens[opening + 1 : failure.at]), failure.text(tokens[failure.at : ends])
     # `[0..5]` reads as the numbers `0.` and `.5`.
     dotted = low.endswith(".") and high.startswith(".")
     return failure.error("S021", low=low[:-1] if dotted else low, high=high[1:] if dotted else high)
@@ -362,6 +355,8 @@ def _plain(failure: Failure) -> Diagnostic:
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _bare_path,
     _unreadable,
+    priority,
+    no_name,
     _late_clause,
     _no_statement,
     _glued_statement,
@@ -370,6 +365,9 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _reserved_name,
     _misspelt_operator,
     _misspelt_clause,
+    blank_in_name,
+    *PHRASES,
+    bars,
     _no_comma,
     one_bound,
     round_range,

@@ -11,9 +11,10 @@ from dataclasses import replace
 from lark import Token
 
 from stlspec.errors import Diagnostic, Edit, Fix
+from stlspec.lang.automaton import automaton
 from stlspec.lang.expected import quoted
 from stlspec.lang.failure import Failure
-from stlspec.lang.statements import is_word
+from stlspec.lang.statements import is_word, lexed
 from stlspec.lang.tree import span_of
 from stlspec.source import Span
 
@@ -41,6 +42,8 @@ def repaired(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:
     Args:    found: what `hints.describe` says of the failure. parses: tells whether tokens are a whole statement.
     Returns: the diagnostic, perhaps at a better place, with a fix if one was found.
     """
+    if found.code == "S001" and found.fixes:
+        return found if _clears(found.fixes[0], failure, parses) else replace(found, fixes=())
     if len(failure.tokens) > _LONGEST or found.fixes or (found.code == "S001" and found.help):
         return found
     match found.code:
@@ -55,6 +58,16 @@ def repaired(found: Diagnostic, failure: Failure, parses: Parses) -> Diagnostic:
         case "S006" | "S019" | "S021":
             return _direct(found, failure, parses)
     return found
+
+
+def _clears(fix: Fix, failure: Failure, parses: Parses) -> bool:
+    """Tell whether a statement parses when its text is edited."""
+    if len(failure.tokens) > _LONGEST:
+        return False
+    start = span_of(failure.tokens[0]).start
+    moved = [Edit(Span(edit.span.start - start, edit.span.end - start), edit.text) for edit in fix.edits]
+    text = Fix(fix.title, tuple(moved)).applied(failure.text(failure.tokens))
+    return parses(lexed(text, automaton().lark)[0])
 
 
 def _token(kind: str, text: str, behind: Token) -> Token:
