@@ -103,7 +103,7 @@ class CsvStream:
 
     def _numbers(self, data: bytes, used: Sequence[str], at: Sequence[int]) -> dict[str, Array] | None:
         """Convert the wanted columns of a block at once; None if it holds anything but rows of numbers."""
-        if "episode" in used or not self._is_table(data):
+        if "episode" in used or data.isspace() or not self._is_table(data):
             return None
         try:
             table = np.loadtxt(io.BytesIO(data), delimiter=",", comments=None, ndmin=2, usecols=at, encoding="latin1")

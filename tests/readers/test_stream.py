@@ -49,6 +49,16 @@ def test_line_ends_blank_lines_quotes_and_cuts_do_not_matter(text, size, monkeyp
     assert sum(b.n_samples for b in found) == 2
 
 
+@pytest.mark.parametrize("size", [3, 2**20])
+@pytest.mark.parametrize(("text", "count"), [(b"x\r\n\r\n", 0), (b"x\r\n1\r\n\r\n\r\n", 1), (b"x\r\n\r\n\n2\r\n", 1)])
+def test_blank_lines_of_one_column_are_no_samples(text, count, size, monkeypatch):
+    """`\\r` alone looks like a value; a block of nothing else must not come out as one without samples."""
+    monkeypatch.setattr(stream, "BLOCK_BYTES", size)
+    found = [block.n_samples for block in blocks(text)]
+    assert sum(found) == count
+    assert 0 not in found
+
+
 def test_whole_stamps_beyond_floats_stay_whole(small):
     stamps = [2**60 + 1, 2**60 + 2, 2**60 + 4]
     found = blocks("".join(["time,x\n", *(f"{t},1\n" for t in stamps)]).encode())
