@@ -7,7 +7,8 @@ stdout, progress on stderr. An experiment whose result is there already is not r
 import argparse
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -23,7 +24,8 @@ def run(options: argparse.Namespace) -> None:
     """Do what the options ask for.
 
     Args:    options: quick, fresh, figures (bools), only (names), out (a folder), jobs (processes).
-    Raises:  UsageError D880: an experiment is unknown, or figures are wanted and matplotlib is missing.
+    Raises:  UsageError D880: an experiment is unknown, figures are wanted and matplotlib is missing, or a result that
+             was kept is damaged.
              InputError S092: the folder cannot be written.
     """
     wanted = chosen(options.only)
@@ -88,7 +90,7 @@ def measure(experiment: Experiment, budget: Budget, out: Path, *, jobs: int, fre
     Args: fresh: run it in any case.
     """
     known = None if fresh else journal.load(out, experiment.name, budget.to_json())
-    if known is not None and not (known.result.get("irl") or {}).get("skipped"):
+    if known is not None and not _was_skipped(known):
         say(f"{experiment.name}: kept from before, {short(known.seconds)} s")
         return known
     say(f"{experiment.name}: {experiment.title}")
@@ -109,16 +111,42 @@ def measure(experiment: Experiment, budget: Budget, out: Path, *, jobs: int, fre
     return record
 
 
+def _was_skipped(record: journal.Record) -> bool:
+    irl = record.result.get("irl")
+    return isinstance(irl, dict) and bool(irl.get("skipped"))
+
+
 def kept(out: Path, budget: Budget) -> dict[str, journal.Record]:
-    """Return what is kept of all experiments with a budget, in their order."""
+    """Return what is kept of all experiments with a budget, in their order.
+
+    Raises: UsageError D880: a result is damaged.
+    """
     found = {name: journal.load(out, name, budget.to_json()) for name in EXPERIMENTS}
-    return {name: record for name, record in found.items() if record is not None}
+    records = {name: record for name, record in found.items() if record is not None}
+    for name, record in records.items():
+        with _undamaged(journal.place_of(out, name), f"--only {name} --fresh"):
+            report.write({name: record})
+    return records
 
 
 def draw(records: dict[str, journal.Record], out: Path) -> list[str]:
-    """Draw all figures, with progress; returns their names."""
+    """Draw all figures, with progress; returns their names.
+
+    Raises: UsageError D880: a result is damaged.
+    """
     results = {name: record.result for name, record in records.items()}
-    return figures.draw_all(results, out / "figures", lambda name: say(f"  figures/{name}"))
+    with _undamaged(out / "results", "--fresh"):
+        return figures.draw_all(results, out / "figures", lambda name: say(f"  figures/{name}"))
+
+
+@contextmanager
+def _undamaged(place: Path, again: str) -> Iterator[None]:
+    """Blame a result that was kept for what is missing or of another kind in it: there is no other input."""
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        way = f"measure it again: {again}"
+        raise UsageError([diagnostic("D880", what=f"what was kept in '{place}' is damaged", help=way)]) from error
 
 
 def say(text: str) -> None:

@@ -5,6 +5,7 @@ the same experiment with the same budget and the same version of the package.
 """
 
 import json
+import math
 import os
 import platform
 from collections.abc import Mapping
@@ -74,7 +75,8 @@ def load(out: Path, name: str, budget: Mapping[str, Any] | None = None) -> Recor
     """Return what was kept of an experiment.
 
     Args:    budget: it must have been measured with; None: with any.
-    Returns: the record; None if there is none, or it is damaged, or of another budget or version.
+    Returns: the record; None if there is none, or it is damaged, or of another budget or version. What its result
+             holds is checked by whoever reads it.
     """
     try:
         document = read_document(place_of(out, name), SCHEMA, _LARGEST)
@@ -86,4 +88,17 @@ def load(out: Path, name: str, budget: Mapping[str, Any] | None = None) -> Recor
         record = Record(**document | {"load": tuple(document["load"])})
     except (KeyError, TypeError):
         return None
+    if not _is_sound(record):
+        return None
     return record if budget is None or record.budget == dict(budget) else None
+
+
+def _is_sound(record: Record) -> bool:
+    """Say whether all fields are of their kind."""
+    numbers = (record.seconds, *record.load)
+    mappings = (record.budget, record.machine, record.result)
+    return (
+        len(numbers) == 3
+        and all(type(x) in (int, float) and abs(x) < math.inf for x in numbers)
+        and all(isinstance(x, dict) for x in mappings)
+    )

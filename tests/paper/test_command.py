@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from stlspec.errors import InputError, UsageError
-from stlspec.paper import command
+from stlspec.paper import command, journal
 from stlspec.paper.experiments import EXPERIMENTS, Experiment
 
 
@@ -87,6 +87,32 @@ def test_what_lacked_its_libraries_is_measured_again(tmp_path, counted, monkeypa
     for _ in range(3):
         command.measure(experiment, command.QUICK, tmp_path, jobs=1, fresh=False)
     assert counted["one"] == 2
+
+
+@pytest.mark.parametrize("result", [{}, {"rows": 3}, {"rows": {"grid-5": {"shaped": [{"seed": 0}]}}}, {"rows": [[]]}])
+def test_a_damaged_result_is_named_with_the_way_out(tmp_path, made, result, capsys):
+    command.prepare(tmp_path)
+    journal.save(tmp_path, made.record("grids", result))
+    with pytest.raises(UsageError) as caught:
+        command.kept(tmp_path, made.tiny)
+    (found,) = caught.value.diagnostics
+    assert found.code == "D880"
+    assert "grids.json" in found.message
+    assert found.help == "measure it again: --only grids --fresh"
+
+
+def test_a_result_that_cannot_be_drawn_is_damaged(tmp_path, made):
+    pytest.importorskip("matplotlib")
+    command.prepare(tmp_path)
+    with pytest.raises(UsageError, match="damaged"):
+        command.draw({"table-1-grid-5": made.record("table-1-grid-5", {"truth": 3})}, tmp_path)
+
+
+def test_an_account_of_libraries_of_another_kind_is_no_traceback(tmp_path, counted, made):
+    command.prepare(tmp_path)
+    journal.save(tmp_path, made.record("one", {"irl": 3}))
+    command.measure(command.EXPERIMENTS["one"], command.QUICK, tmp_path, jobs=1, fresh=False)
+    assert counted["one"] == 0
 
 
 def test_results_of_another_budget_are_measured_again(tmp_path, counted):

@@ -47,6 +47,20 @@ def test_a_field_too_many_is_damage(out, made):
     assert journal.load(out, "grids") is None
 
 
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("seconds", "1"), ("seconds", True), ("seconds", float("nan")), ("load", [1.0]), ("load", ["a", "b"]),
+        ("load", 3), ("machine", []), ("result", [1]), ("result", None), ("budget", "quick"),
+    ],
+)  # fmt: skip
+def test_a_field_of_another_kind_is_damage(out, made, field, value):
+    journal.save(out, made.record("grids", {}))
+    place = out / "results" / "grids.json"
+    place.write_text(json.dumps(json.loads(place.read_text()) | {field: value}))
+    assert journal.load(out, "grids") is None
+
+
 def test_numbers_that_are_none_are_refused(out, made):
     with pytest.raises(ValueError, match="JSON"):
         journal.save(out, made.record("grids", {"a": float("nan")}))
