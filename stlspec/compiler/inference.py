@@ -34,7 +34,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import NANOSECONDS, SPELLINGS, Dimension, dimension
+from stlspec.lang.units import NANOSECONDS, Dimension, dimension
 from stlspec.source import Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
@@ -151,12 +151,11 @@ class Inference:
         if node.unit is None:
             return Typing("real", None, True, node.value)
         found = dimension(node.unit.text)
-        unknown = [w for w in found or () if w not in self.quantities.known]
-        if found is None or unknown:
-            word = unknown[0] if unknown else ""
-            close = SPELLINGS.get(word) or closest(word, sorted(self.quantities.known))
+        if found is None or not found.keys() <= self.quantities.known:
+            close = self.quantities.meant(node.unit.text)
             way = f"did you mean `{close}`?" if close else "declare a signal with this unit, or remove it"
-            return self._report("U302", node.unit.span, unit=node.unit.text, help=way)
+            edits = (Edit(node.unit.span, close),) if close else ()
+            return self._report("U302", node.unit.span, edits=edits, unit=node.unit.text, help=way)
         return Typing("real", found, True, node.value)
 
     def _name(self, node: Name) -> Typing:

@@ -5,13 +5,15 @@ None (a literal, a param without a unit) takes the unit of the other side; times
 """
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
 from stlspec.lang.nodes import Expression, Group, Number, Prefix
-from stlspec.lang.units import KNOWN, NANOSECONDS, Dimension, spell
+from stlspec.lang.spelling import closest
+from stlspec.lang.units import KNOWN, NANOSECONDS, SPELLINGS, Dimension, spell
 
 Operand = tuple[Expression, Typing]
 Unit = Dimension | Typing | None
@@ -22,6 +24,9 @@ SAME = Fraction(1)
 """The factor between equal units."""
 _HIGHEST_POWER = 4
 """Powers of time above this are compared, not converted: the factors would be no numbers that one can read."""
+_WORD = re.compile(r"[A-Za-z_%][A-Za-z_0-9%]*")
+_POWER = re.compile(r"([A-Za-z_%]+)([2-9])\Z")
+"""A power as `m/s2` has it."""
 
 
 def conversion(unit: Dimension | None, to: Dimension | None) -> Fraction | None:
@@ -72,6 +77,19 @@ class Quantities:
     def __init__(self, report: Callable[..., Typing]) -> None:
         self._report = report
         self.known: set[str] = set(KNOWN)
+
+    def meant(self, unit: str) -> str | None:
+        """Return a unit with the words that nothing declares replaced by those that were meant; None if one is open."""
+        words = {word: self._word(word) for word in _WORD.findall(unit)}
+        return None if None in words.values() else _WORD.sub(lambda match: words[match[0]] or "", unit)
+
+    def _word(self, word: str) -> str | None:
+        if word in self.known:
+            return word
+        power = _POWER.match(word)
+        if power is not None and power[1] in self.known:
+            return f"{power[1]}**{power[2]}"
+        return SPELLINGS.get(word) or closest(word, sorted(self.known))
 
     def value_in(self, typing: Typing, unit: Unit) -> float | None:
         """Return a constant's value in `unit`; None if it is not known."""

@@ -92,6 +92,22 @@ def test_units_that_do_not_fit_are_one_diagnostic(formula, expected):
 
 
 @pytest.mark.parametrize(
+    ("formula", "meant"),
+    [
+        ("3 sec > now", "s"),
+        ("v > 3 m/sec", "m/s"),
+        ("v > 3 meters/seconds", "m/s"),
+        ("v / 3 s > 3 m/s2", "m/s**2"),
+        ("f > 3 furlogn", "furlong"),
+    ],
+)
+def test_a_unit_of_several_words_is_mended_as_a_whole(formula, meant):
+    (problem,) = checked(f"hard h: {formula}")[1]
+    assert problem.help == f"did you mean `{meant}`?"
+    assert check(parse(SourceText.of("s", problem.fixes[0].applied(problem.source.text))))[1] == ()
+
+
+@pytest.mark.parametrize(
     ("expression", "unit", "value"),
     [
         ("2 s + 500 ms", "s", 2.5),
