@@ -5,6 +5,7 @@ requirements to results. The values of all samples are computed at once; witness
 are first asked for, from the result's own copy of the signals, so that the answer cannot change.
 """
 
+import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -327,6 +328,10 @@ def _in_order(traces: Sequence[Trace], values: NDArray[Any]) -> NDArray[Any]:
 
 def _sample(trace: Trace, at: int) -> int:
     n = trace.n_samples
+    try:
+        at = operator.index(at)
+    except TypeError:
+        raise UsageError([diagnostic("D880", what=f"at={at!r}"[:40], help=f"use {-n} to {n - 1}")]) from None
     if not -n <= at < n:
         what = f"there is no sample {at}: the trace has {n}"
         raise UsageError([diagnostic("D880", what=what, help=f"use {-n} to {n - 1}")])

@@ -117,7 +117,7 @@ def test_any_sample_can_be_reported(at, expected):
     assert result["avoid"].signal.tolist() == [-1, -1, 1, 4]
 
 
-@pytest.mark.parametrize("at", [4, -5])
+@pytest.mark.parametrize("at", [4, -5, 1.0, "1", None])
 def test_a_sample_that_does_not_exist_is_refused(at):
     with pytest.raises(UsageError, match="D880"):
         evaluate(GRID, {"x": [3, 0, 2, 5], "y": [4, 2, 1, 1]}, at=at)

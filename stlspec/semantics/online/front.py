@@ -20,7 +20,7 @@ from stlspec.semantics.online.past import Greatest, Since, Sliding
 from stlspec.semantics.online.plan import Plan
 from stlspec.semantics.online.samples import as_boolean, as_real, missing, outside, refuse
 from stlspec.semantics.online.saving import Remembering, State, Unsound, numbers
-from stlspec.semantics.robustness import TIE, needed_nodes
+from stlspec.semantics.robustness import TIE
 
 _MAY_BE_NAN = frozenset({"add", "sub", "mul", "div", "pow", "sqrt", "log", "sin", "cos", "delta", "rate"})
 
@@ -235,13 +235,22 @@ class Front:
 
     def value(self, index: int) -> str:
         """Write a settled formula and all under it, each once; return its variable."""
-        if index not in self._formulas:
-            # A loop over the DAG, not a recursion: a chain of formulas may be long.
-            for below in needed_nodes(self.nodes, [index]):
-                node = self.nodes[below]
-                if node.op not in REAL and below not in self._formulas:
-                    self._formulas[below] = self._formula(below, node)
+        for below in self._unwritten(index):
+            self._formulas[below] = self._formula(below, self.nodes[below])
         return self._formulas[index]
+
+    def _unwritten(self, index: int) -> list[int]:
+        """Return the formulas that are still to be written for one, children first."""
+        # A loop over the DAG, not a recursion: a chain of formulas may be long. It looks at what is missing only:
+        # there may be thousands of requirements, each with its own formulas.
+        found: set[int] = set()
+        stack = [index]
+        while stack:
+            below = stack.pop()
+            if below not in found and below not in self._formulas and self.nodes[below].op not in REAL:
+                found.add(below)
+                stack += self.nodes[below].children
+        return sorted(found)
 
     def _formula(self, index: int, node: Node) -> str:
         lines, op = self.lines, node.op

@@ -1,6 +1,7 @@
 """The generated lines: settled formulas as the offline engine has them, and no word of the spec in the code."""
 
 import random
+import sys
 
 import numpy as np
 import pytest
@@ -57,6 +58,36 @@ def test_nothing_of_the_text_of_a_spec_gets_into_the_code():
     front.value(root)
     assert "import" not in "\n".join(lines.lines)
     assert make_monitor(bundle).update({evil: 2.0})[evil].current == 1.5
+    (known,) = make_monitor(bundle, "every").update({evil: 2.0})
+    assert (known.requirement, known.robustness) == (evil, 1.5)
+
+
+def lines_run(call):
+    """How many lines of Python a call runs: what a clock cannot tell from what else the machine does."""
+    before, count = sys.gettrace(), 0
+
+    def trace(frame, event, argument):
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    sys.settrace(trace)
+    try:
+        call()
+    finally:
+        sys.settrace(before)
+    return count
+
+
+def test_the_work_for_a_requirement_does_not_grow_with_their_number():
+    b = Builder()
+    x = b.add("signal", value="x")
+    roots = [b.add("not", [b.add("gt", [x, b.add("const", value=float(i))])]) for i in range(300)]
+    bundle = bundle_of(tuple(b.nodes), (Requirement("r", "hard", roots[0]),), (Signal("x"),), STEP)
+    front = Front(make_plan(bundle), bundle.signals, Lines())
+    front.write_samples()
+    first, *_, last = (lines_run(lambda root=root: front.value(root)) for root in roots)
+    assert 0 < last <= first
 
 
 def test_shared_nodes_are_computed_once():
