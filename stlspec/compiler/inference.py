@@ -8,6 +8,7 @@ one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from stlspec.compiler.advice import FOR_FORMULAS, for_truth, for_unknown, short
 from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.intervals import swapped, ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
@@ -58,12 +59,6 @@ MANY_PROBLEMS = 300
 SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
 """Operators whose operands are brought to one unit."""
 
-_FOR_FORMULAS = {
-    **dict.fromkeys(("==", "!="), "use `iff` to say that two formulas agree"),
-    **dict.fromkeys(("=>", "<="), "for `implies` write `->`; to compare, both sides are numbers"),
-    "-": "`-` takes a number; to negate a formula write `not`",
-}
-
 
 class Inference:
     """Types expressions one after the other; `typings`, `intervals` and `problems` grow as it goes."""
@@ -78,7 +73,7 @@ class Inference:
         self.scope: dict[str, Typing] = {}
         self.typings: dict[int, Typing] = {}
         self.intervals: dict[int, tuple[int, int | None]] = {}
-        self.quantities = Quantities(self._report)
+        self.quantities = Quantities(self._report, lambda span: self.source.slice(span))
         self._said: dict[tuple[str, str], int] = {}
 
     def enter(self, file: Syntax) -> None:
@@ -179,9 +174,8 @@ class Inference:
             way = "declare it in this file or use the file that does; what the using file declares is not seen here"
             return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
-        close = closest(name, [*self.known(), "now", "true", "false", "inf"]) if few else None
-        edits = (Edit(node.span, close),) if close else ()
-        return self._report("N101", node.span, edits=edits, name=name, help=_way_out(name, close))
+        way, edits = for_unknown(name, node.span, [*self.known(), "now", "true", "false", "inf"] if few else ())
+        return self._report("N101", node.span, edits=edits, name=name, help=way)
 
     def _index(self, node: Index) -> Typing:
         inner = self._name(node.name)
@@ -277,6 +271,10 @@ class Inference:
         if len(node.operators) > 1 and not (words <= {"lt", "le"} or words <= {"gt", "ge"}):
             return self._report("S022", node.operators[1].span)
         sign = self.source.slice(node.operators[0].span)
+        truth = for_truth(node, below, self.source.slice)
+        if truth is not None:
+            formula = node.operands[below.index(FORMULA)]
+            return self._report("T202", formula.span, help=truth[0], edits=truth[1])
         if not self._all_real(node.operands, sign):
             return BROKEN
         joined = self.quantities.joined(list(zip(node.operands, below, strict=True)), "compared")
@@ -318,7 +316,7 @@ class Inference:
         kind = self.typings[id(node)].kind
         if kind == "formula":
             way = f"compare or add numbers only; `{what}` takes numbers"
-            self._report("T202", node.span, help=_FOR_FORMULAS.get(what, way))
+            self._report("T202", node.span, help=FOR_FORMULAS.get(what, way))
             self.typings[id(node)] = BROKEN
         return kind == "real"
 
@@ -382,18 +380,3 @@ class Inference:
             )
             return None
         return low, high
-
-
-def short(text: str) -> str:
-    """Cut a piece of source to what fits into a message."""
-    flat = " ".join(text.split())
-    return flat if len(flat) <= 30 else flat[:29] + "…"
-
-
-def _way_out(name: str, close: str | None) -> str:
-    """Say what to do about an unknown name."""
-    if close is not None:
-        return f"did you mean `{close}`?"
-    if name in OPERATOR_WORDS:
-        return f"`{name}` is an operator: it needs an operand"
-    return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`"

@@ -9,11 +9,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
+from stlspec.compiler.advice import for_units
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
 from stlspec.lang.nodes import Expression, Group, Number, Prefix
 from stlspec.lang.spelling import closest
 from stlspec.lang.units import KNOWN, NANOSECONDS, SPELLINGS, Dimension, spell
+from stlspec.source import Span
 
 Operand = tuple[Expression, Typing]
 Unit = Dimension | Typing | None
@@ -72,10 +74,10 @@ def _shown(unit: Dimension | None) -> str:
 
 
 class Quantities:
-    """The rules of units; `report(code, span, **fields)` receives what is wrong."""
+    """The rules of units; `report(code, span, **fields)` receives what is wrong, `text(span)` is what stands there."""
 
-    def __init__(self, report: Callable[..., Typing]) -> None:
-        self._report = report
+    def __init__(self, report: Callable[..., Typing], text: Callable[[Span], str]) -> None:
+        self._report, self._text = report, text
         self.known: set[str] = set(KNOWN)
 
     def meant(self, unit: str) -> str | None:
@@ -108,11 +110,11 @@ class Quantities:
                 unit, first = typing.unit, node
             elif conversion(typing.unit, unit) is None:
                 assert first is not None
-                missing = not unit or not typing.unit
-                way = "declare the unit of both sides" if missing else "convert one side by a factor with a unit"
-                return self._report(
-                    "U301", node.span, left=_shown(unit), right=_shown(typing.unit), joined=verb, help=way
-                )
+                # A range's bound stands for both sides, the other being the signal.
+                pair = len(operands) == 2 and first is not node
+                way, edits = for_units((first, Typing("real", unit)), (node, typing), self._text, pair=pair)
+                fields = {"left": _shown(unit), "right": _shown(typing.unit), "joined": verb, "help": way}
+                return self._report("U301", node.span, edits=edits, **fields)
         return unit
 
     def of_operators(self, words: Sequence[str], operands: Sequence[Operand]) -> Unit:

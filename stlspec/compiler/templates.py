@@ -11,7 +11,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from stlspec.compiler.inference import Inference, short
+from stlspec.compiler.advice import short
+from stlspec.compiler.inference import Inference
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Instance, Typing
 from stlspec.errors import Diagnostic, Label
 from stlspec.lang.nodes import (

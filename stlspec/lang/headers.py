@@ -94,6 +94,21 @@ def blank_in_name(failure: Failure) -> Diagnostic | None:
     return habit(failure, f"a name has no blanks: write `{name}`", *edits, at=whole, wanted="one word")
 
 
+def glued_type(failure: Failure) -> Diagnostic | None:
+    """Describe `signal alarmbool :`, a name and its type glued together. Not in the paper: the language."""
+    if [token.type for token in failure.tokens] != ["SIGNAL", "NAME", "COLON"] or failure.token is not None:
+        return None
+    word, colon = failure.tokens[1:]
+    for kind in ("bool", "real"):
+        name = str(word).removesuffix(kind)
+        # That the text has the shorter name too tells the slip from a name that ends like this.
+        if name not in ("", str(word)) and re.search(rf"\b{name}\b", failure.source.text):
+            whole = span_of(word).to(span_of(colon))
+            edit = Edit(whole, f"{name} : {kind}")
+            return habit(failure, f"write `{name} : {kind}`", edit, at=whole, wanted="a name, `:` and a type")
+    return None
+
+
 def _required(failure: Failure, names: list[str]) -> bool:
     """Tell whether one of `names` is a requirement: `depends on` was lost before it."""
     return any(re.search(rf"^\s*(hard|soft)\s+{name}\b", failure.source.text, re.MULTILINE) for name in names)

@@ -16,7 +16,7 @@ from stlspec.errors import Diagnostic, Edit, Label
 from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import TEMPORAL, Failure
 from stlspec.lang.habits import bars, dotted, one_bound, round_range
-from stlspec.lang.headers import blank_in_name, no_name, priority
+from stlspec.lang.headers import blank_in_name, glued_type, no_name, priority
 from stlspec.lang.phrases import PHRASES
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
@@ -375,5 +375,6 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _stray_interval,
     _open_bracket,
     _listed_names,
+    glued_type,
     _cut_off,
 )

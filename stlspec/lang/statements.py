@@ -175,8 +175,10 @@ def lost(broken: Sequence[Sequence[Token]]) -> Lost:
         for left, right in pairwise(tokens):
             words += [right] if left.type in _RESERVED_STARTS else [left] if right.type in _RESERVED_STARTS else []
         names.update(str(token) for token in words if is_word(token))
+        # `signal alarmbool :` lost the gap between a name and its type.
+        names.update(str(t).removesuffix(kind) for t in words for kind in ("bool", "real") if is_word(t))
     return Lost(
-        frozenset(names),
+        frozenset(names - {""}),
         any(tokens[0].type in _RESERVED_STARTS and not _has_name(tokens) for tokens in broken),
         any(tokens[0].type not in _RESERVED_STARTS for tokens in broken),
         frozenset(

@@ -1,11 +1,13 @@
 """Units: the words that the language knows, and what a compound such as `m/s**2` is made of.
 
-In: a unit as text. Out: its dimension as a mapping from word to exponent. Only time units are ever converted;
+In: a unit as text. Out: its dimension as a mapping from word to exponent. Only time units are ever converted,
+and others only suggested (`SCALES`);
 other words are compared as they stand, so any word may be declared for a signal.
 """
 
 import re
 from collections.abc import Mapping
+from fractions import Fraction
 
 NANOSECONDS = {
     "ns": 1,
@@ -16,6 +18,27 @@ NANOSECONDS = {
     "h": 3_600_000_000_000,
 }
 """Ticks in one of each time unit."""
+
+SCALES = {
+    **{time: ("s", Fraction(ticks, 1_000_000_000)) for time, ticks in NANOSECONDS.items()},
+    **{
+        word: (base, Fraction(factor))
+        for base, words in {
+            "m": "km 1000,cm 0.01,mm 0.001,um 0.000001,nm 0.000000001,inch 0.0254,ft 0.3048,mi 1609.344",
+            "g": "kg 1000,t 1000000",
+            "V": "mV 0.001",
+            "A": "mA 0.001",
+            "W": "kW 1000",
+            "J": "kJ 1000",
+            "Hz": "kHz 1000,MHz 1000000",
+            "Pa": "kPa 1000,bar 100000",
+            "byte": "bit 0.125",
+            "rev": "deg 1/360",
+        }.items()
+        for word, factor in (pair.split() for pair in words.split(","))
+    },
+}
+"""Units that are multiples of one another: the common one, and how much of it one of each is. For suggestions only."""
 
 STEP = "step"
 KNOWN = frozenset(

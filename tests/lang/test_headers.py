@@ -64,3 +64,9 @@ def test_other_mistakes_of_headers_keep_their_message(statement):
     problems = parse(SourceText.of("s", f"signal x\nhard a: x > 1\n{statement}\n")).diagnostics
     assert [p for p in problems if "blanks" in p.help or "a name and" in p.help] == []
     assert len(problems) == 1
+
+
+def test_a_name_and_its_type_glued_together_come_apart():
+    text = "signal alarmbool :\nhard a: alarm\n"
+    assert fixed(text) == "signal alarm : bool\nhard a: alarm\n"
+    assert only("signal alarmbool :\nhard a: 1 > 0\n").code == "S002"

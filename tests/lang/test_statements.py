@@ -63,6 +63,7 @@ def test_every_keyword_is_spelled_like_a_word_and_signs_are_not():
         ("let § p = x > 1", {"let", "p"}, False, False),
         ("hard : x > 1", {"hard"}, True, False),
         ("tiem s", {"tiem", "s"}, False, True),
+        ("signal alarmbool :", {"alarmbool", "alarm"}, False, False),
         ("signal d, e, f", {"signal", "d", "e", "f"}, False, False),
         ("signal x hard a: x > 1", {"signal", "x", "hard", "a"}, False, False),
     ],

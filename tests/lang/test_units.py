@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stlspec.lang.units import KNOWN, NANOSECONDS, SPELLINGS, dimension, is_unit_word, spell
+from stlspec.lang.units import KNOWN, NANOSECONDS, SCALES, SPELLINGS, dimension, is_unit_word, spell
 
 
 @pytest.mark.parametrize(
@@ -43,3 +43,9 @@ def test_time_units_are_exact_multiples_of_a_nanosecond():
 def test_habits_of_spelling_lead_to_units_that_are_known():
     assert set(SPELLINGS.values()) <= KNOWN
     assert not any(is_unit_word(word) for word in SPELLINGS)
+
+
+def test_scales_are_between_words_that_the_language_knows():
+    assert set(SCALES) <= KNOWN
+    assert {base for base, _ in SCALES.values()} <= KNOWN
+    assert all(base not in SCALES or SCALES[base] == (base, 1) for base, _ in SCALES.values())

@@ -5,7 +5,7 @@ whose grammar orders them otherwise, would read a formula differently, that is s
 without it is a param or another formula.
 """
 
-from stlspec.compiler.inference import short
+from stlspec.compiler.advice import short
 from stlspec.lang.nodes import Expression, Infix, Name, Number, Prefix
 from stlspec.source import SourceText
 from stlspec.tools.importing.formulas import Binding, Dialect, Formulas, bare, every_node
