@@ -288,10 +288,9 @@ def _first_hard(declared: Declared, requirement: RequirementStatement) -> str | 
 def _instead(declared: Declared, requirement: RequirementStatement, on: Name) -> str:
     """Say what to write for a dependency that is declared nowhere and like no other name."""
     first = _first_hard(declared, requirement)
-    if first is not None:
-        return f"write `depends on {first}`, or state `hard {on.text}: ...`"
     what = f"`depends on {on.text}`" if len(requirement.depends_on) == 1 else f"`{on.text}` and its comma"
-    return f"remove {what}, or state `hard {on.text}: ...`"
+    way = f"write `depends on {first}`" if first is not None else f"remove {what}"
+    return way if on.text in declared.places else f"{way}, or state `hard {on.text}: ...`"
 
 
 def _independent(source: SourceText, requirement: RequirementStatement, on: Name) -> tuple[Edit, ...]:

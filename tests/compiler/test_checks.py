@@ -94,6 +94,8 @@ def test_the_graph_of_requirements_is_checked(text, expected):
         ("hard a: true\nhard b depends on nowhere: true", "remove `depends on nowhere`, or state `hard nowhere: ...`"),
         ("hard a: true\nsoft b depends on nowhere: true", "write `depends on a`, or state `hard nowhere: ...`"),
         ("hard a: true\nsoft b depends on a, no: true", "remove `no` and its comma, or state `hard no: ...`"),
+        ("signal x\nhard a: x > 1\nsoft b depends on x: true", "write `depends on a`"),
+        ("signal x\nhard b depends on x: x > 1", "remove `depends on x`"),
     ],
 )  # fmt: skip
 def test_the_way_out_of_a_dependency_on_nothing_leaves_nothing_to_report(text, help_):
