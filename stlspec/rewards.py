@@ -301,7 +301,7 @@ def _numberless(bound: BoundDemonstration) -> Diagnostic:
         way = 'correct or remove "env" in the demonstration'
     elif bound.environment is not None:
         reason = f"'{bound.environment.id}' does not number its states"
-        way = "use an environment with discrete states, or cut its observations into bins: --bins 50,50"
+        way = "use an environment with discrete states; `learn --bins 50,50` cuts observations into bins and infers it"
     return diagnostic("D875", file=file, name=bound.name, reason=reason, help=way)
 
 

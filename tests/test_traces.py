@@ -92,7 +92,7 @@ def test_stamps_within_one_percent_of_a_period_are_taken_as_that_period():
 @pytest.mark.parametrize(("stamps", "sample"), [([0, 101.1], 1), ([0, 100, 250], 2), ([0, 100, 100.5], 2)])
 def test_a_stamp_off_the_period_is_refused(stamps, sample):
     message = refused("D811", TENTHS, [X], {"x": [0] * len(stamps)}, stamps)
-    assert f"sample {sample} at {stamps[sample]:g} is not a multiple of the period 100 ms" in message
+    assert f"sample {sample} at {stamps[sample]:g} ms is not a multiple of the period 100 ms" in message
 
 
 def test_one_sample_counts_as_evenly_spaced():

@@ -56,7 +56,7 @@ def compile_spec(
     params: Params = None,
     output: FormatOption = Format.TEXT,
 ) -> None:
-    """Compile a spec into a bundle that every other command takes."""
+    """Compile a spec into a bundle, which other commands take in place of the spec."""
     spare_inputs(out, [spec])
     bundle = files.read_spec(spec, read_params(params))
     files.write_bytes(out, bundle_file.dump(bundle))

@@ -124,8 +124,8 @@ CODES: tuple[Code, ...] = (
         "D811",
         "a time stamp off the sampling period",
         "error",
-        message="sample {sample} at {time} is not a multiple of the period {period} after the first",
-        help="for uneven stamps write `time {unit}` in the spec",
+        message="sample {sample} at {time} {unit} is not a multiple of the period {period} after the first",
+        help="stamps are read in {unit}: give the period in the unit of the data; for uneven ones write `time {unit}`",
         explanation="With a sampling period, stamps within 1 % of the period of k periods from the first are "
         "taken as k; anything else means that the declaration and the data disagree.",
         bad="# time 100 ms\ntime,x\n0,1\n130,1\n",

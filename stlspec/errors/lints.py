@@ -158,7 +158,7 @@ CODES: tuple[Code, ...] = (
         "a horizon longer than the demonstrations",
         "warning",
         message="`{name}` looks {horizon} ahead, further than {count} reach; the shortest lasts {shortest}",
-        help="bounds that no demonstration reaches are not tested by them; `--end interval` says what is open",
+        help="bounds that no demonstration reaches are not tested by them; `score --end interval` says what is open",
         explanation="A demonstration counts as a complete episode: windows are cut at its end. Reported by "
         "`stlspec check --demos`.",
         bad="# stlspec check spec.stl --demos short.csv",
