@@ -34,6 +34,8 @@ from stlspec.scores import DemonstrationScore, Ranking, moment
 Progress = Callable[[int, int, int], None]
 _WIDTH_OF_FILES = 10_000
 _STYLES = {"good": "green", "incomplete": "yellow", "bad": "red", "satisfied": "green", "violated": "red"}
+_NEVER = 0.0005
+"""A probability below this is shown as 0.000."""
 _MARKS = {"satisfied": "✓", "violated": "✗", "undecided": "?"}
 
 
@@ -42,6 +44,16 @@ def console_for(stream: TextIO) -> Console:
     if stream.isatty():
         return Console(file=stream, highlight=False, soft_wrap=False)
     return Console(file=stream, highlight=False, width=_WIDTH_OF_FILES, no_color=True)
+
+
+def _print_table(table: Table, console: Console) -> None:
+    """Print a table; in files and pipes without the blanks that fill up its last column."""
+    if console.is_terminal:
+        console.print(table)
+        return
+    with console.capture() as captured:
+        console.print(table)
+    console.file.write("".join(f"{line.rstrip()}\n" for line in captured.get().splitlines()))
 
 
 def shown_number(value: float | None) -> str:
@@ -84,7 +96,7 @@ def print_ranking(ranking: Ranking, stream: TextIO) -> None:
         else:
             head = [Text(row.name)]
         table.add_row(*head, *cells)
-    console.print(table)
+    _print_table(table, console)
     _print_reasons(ranking, console)
 
 
@@ -194,7 +206,7 @@ def print_formula(results: Sequence[FormulaResult], stream: TextIO) -> None:
         where = f"{moment(result)}: {witness.reason}" if witness else result.reason
         verdict = Text(result.verdict.value, _STYLES.get(result.verdict.value, ""))
         table.add_row(Text(row.name), verdict, shown_number(result.robustness), Text(where))
-    console_for(stream).print(table)
+    _print_table(table, console_for(stream))
 
 
 @contextmanager
@@ -240,16 +252,42 @@ def files_progress(stream: TextIO, total: int) -> Iterator[Callable[[int, str], 
 def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment, out: Path, stream: TextIO) -> None:
     """Print what was learnt: requirements with margins, the path on the map, the training, the files."""
     console = console_for(stream)
+    console.print(Text(f"The policy {_success(outcome)}.", "bold green" if outcome.success else "bold yellow"))
+    _print_table(_margins(outcome, bundle), console)
+    drawing = way_on_map(environment, outcome.states)
+    if drawing:
+        console.print(Text("\n" + _heading_of_path(outcome)))
+        console.print(Text("\n".join(drawing)))
+    for block in (taught(outcome), _training_lines(outcome)):
+        if block:
+            console.print(Text("\n" + "\n".join(block)))
+    for note in outcome.notes:
+        console.print(Text(note))
+    console.print(Text(f"\nFiles in {out}{os.sep}: {', '.join(sorted(outcome.files.values()))}"))
+
+
+def _success(outcome: Outcome) -> str:
+    """Say whether the policy meets the spec, so that one that never does is not taken for a success."""
     chance = outcome.satisfaction
-    success = "meets every requirement" if outcome.success else "does not meet every requirement"
-    if chance is not None:
-        success = f"meets every requirement with probability {interval_of(chance)}"
-    console.print(Text(f"The policy {success}.", "bold green" if outcome.success else "bold yellow"))
+    if chance is None:
+        return "meets every requirement" if outcome.success else "does not meet every requirement"
+    if chance.value >= _NEVER:
+        return f"meets every requirement with probability {interval_of(chance)}"
+    never = [name for name, alone in chance.alone.items() if alone < _NEVER]
+    which = f"; {' and '.join(never)} never hold{'s' if len(never) == 1 else ''}" if never else ""
+    return f"does not meet every requirement: all hold with probability {interval_of(chance)}{which}"
+
+
+def _margins(outcome: Outcome, bundle: BundleData) -> Table:
+    """Return a row for each requirement: by how much it holds, or how likely it does where moves are by chance."""
+    chance = outcome.satisfaction
     table = Table(box=None, pad_edge=False, show_header=False)
     for requirement in bundle.requirements:
         if chance is not None:
-            likely = f"holds with probability {chance.alone[requirement.name]:.3f}"
-            table.add_row(Text(f"  {requirement.name}"), requirement.strength, likely)
+            alone = chance.alone[requirement.name]
+            verdict = "satisfied" if alone == 1.0 else "violated" if alone < _NEVER else ""
+            mark = Text(f"  {_MARKS.get(verdict, '~')} {requirement.name}", _STYLES.get(verdict, ""))
+            table.add_row(mark, requirement.strength, f"holds with probability {alone:.3f}")
             continue
         result = outcome.evaluation[requirement.name]
         verdict = result.verdict.value
@@ -258,19 +296,16 @@ def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment
         margin = f"{held} with robustness {shown_number(result.robustness)}"
         why = f"decided at {moment(result)}: {result.witness.reason}" if result.witness else ""
         table.add_row(mark, requirement.strength, margin, Text(why, "dim"))
-    console.print(table)
-    drawing = way_on_map(environment, outcome.states)
-    if drawing:
-        goals = f" to {', then '.join(outcome.goal_order)}" if outcome.goal_order else ""
-        goals += f" (samples {', '.join(map(str, outcome.stops))})" if len(outcome.stops) > 1 else ""
-        console.print(Text(f"\nIts path{goals}, {counted(len(outcome.actions), 'step')}:"))
-        console.print(Text("\n".join(drawing)))
-    for block in (taught(outcome), _training_lines(outcome)):
-        if block:
-            console.print(Text("\n" + "\n".join(block)))
-    for note in outcome.notes:
-        console.print(Text(note))
-    console.print(Text(f"\nFiles in {out}{os.sep}: {', '.join(sorted(outcome.files.values()))}"))
+    return table
+
+
+def _heading_of_path(outcome: Outcome) -> str:
+    """Say which goals the drawn path leads to, and which it does not reach."""
+    reached, missed = outcome.goal_order[: len(outcome.stops)], outcome.goal_order[len(outcome.stops) :]
+    goals = f" to {', then '.join(reached)}" if reached else ""
+    goals += f" (samples {', '.join(map(str, outcome.stops))})" if len(outcome.stops) > 1 else ""
+    lost = f" {' and '.join(missed)} {'is' if len(missed) == 1 else 'are'} not reached" if missed else ""
+    return f"Its path{goals}, {counted(len(outcome.actions), 'step')}:{lost}"
 
 
 def print_source(source: Source, stream: TextIO) -> None:
@@ -291,7 +326,7 @@ def _training_lines(outcome: Outcome) -> list[str]:
     several = f" over {segments} segments, each trained once" if segments > 1 else ""
     lines = [
         f"{counted(training.episodes, 'episode')}{several}, {counted(training.env_steps, 'step')}, "
-        f"{training.seconds:.1f} s; "
+        f"{training.seconds:{'.1f' if training.seconds >= 0.1 else '.2g'}} s; "
         f"{counted(training.hard_violations, 'hard violation')}, {counted(training.masked, 'step')} masked"
         + (f" ({training.prefilled} of them known from bad demonstrations)" if training.prefilled else "")
     ]

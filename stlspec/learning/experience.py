@@ -208,7 +208,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
     actions = [greedy_action(row) for row in values]
     satisfaction = scene.runner.satisfaction(actions, settings)
     shown = scene.runner.run(actions, settings, 0)
-    n_states = scene.problem.n_states
+    n_states, endings = scene.problem.n_states, scene.problem.endings
     named: list[Any] = [environment.decode(state) for state in range(n_states)]
     policy = Policy(
         MappingProxyType(environment.describe()),
@@ -224,6 +224,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         states=shown.states,
         actions=shown.actions,
         goal_order=(scene.runner.goal_name,),
+        stops=(len(shown.actions),) if endings and endings[shown.states[-1]] == GOAL else (),
         evaluation=shown.evaluation,
         meets_hard=satisfaction.hard > 0.0,
         training=Training(
@@ -235,13 +236,17 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         checks=(),
         lessons=lessons_of(scene.evidence, environment),
         warnings=() if settings.method == "plain" else scene.evidence.warnings,
-        notes=() if environment.deterministic else _remarks(satisfaction),
+        notes=() if environment.deterministic else _remarks(satisfaction, environment),
         satisfaction=None if environment.deterministic else satisfaction,
         observations=shown.observations,
     )
 
 
-def _remarks(found: Satisfaction) -> tuple[str, ...]:
+def _remarks(found: Satisfaction, environment: Environment) -> tuple[str, ...]:
+    """Say how probabilities were found, and of a path that can be drawn, which run it is."""
+    drawn = environment.map is not None and environment.n_columns is not None
     if found.method == "exact":
-        return ("probabilities are exact, by the table of outcomes, within the step limit; the path is one run",)
-    return (f"probabilities are those of {found.n} runs of the policy; the path is the first of them",)
+        path = "; the path is one run" if drawn else ""
+        return (f"probabilities are exact, by the table of outcomes, within the step limit{path}",)
+    path = "; the path is the first of them" if drawn else ""
+    return (f"probabilities are those of {found.n} runs of the policy{path}",)

@@ -31,6 +31,51 @@ def test_learn_writes_a_policy_and_says_what_it_meets(tmp_path: Path, capsys: py
     assert not (tmp_path / "run.partial").exists()
 
 
+def test_a_path_that_stops_short_says_which_goal_is_not_reached(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["learn", SPEC, *WORLD, "--episodes", "300", "--method", "paper", "--demos", DEMOS]
+    run([*words, "--out", str(tmp_path / "run")])
+    text = capsys.readouterr().out
+    assert "The policy does not meet every requirement.\n" in text
+    assert "\nIts path, 100 steps: at_goal is not reached\n" in text
+    assert [line for line in text.splitlines() if line != line.rstrip()] == []
+
+
+LAKE = [
+    str(SPECS / "frozenlake_4x4.stl"),
+    "--env",
+    "FrozenLake-v1",
+    "--demos",
+    str(SPECS / "demos/frozenlake_4x4.jsonl"),
+]
+
+
+def test_a_policy_that_never_meets_the_spec_does_not_read_like_a_success(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spec = tmp_path / "lake.stl"
+    spec.write_text(
+        "signal d_obs\nsignal d_goal\nhard avoid: always (d_obs >= 1)\nsoft early: eventually[0, 3] (d_goal < 1)\n"
+        "soft reach: eventually (d_goal < 1)\n"
+    )
+    run(["learn", str(spec), *LAKE[1:], "--episodes", "3000", "--out", str(tmp_path / "run")])
+    text = capsys.readouterr().out
+    assert "The policy does not meet every requirement: all hold with probability 0.0000; early never holds.\n" in text
+    assert "  ✗ early  soft  holds with probability 0.000\n" in text
+
+
+def test_a_path_by_chance_says_whether_it_reaches_the_goal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for episodes in ("5", "3000"):
+        run(["learn", *LAKE, "--episodes", episodes, "--out", str(tmp_path / episodes)])
+    texts = capsys.readouterr().out.split("Its path")[1:]
+    for text, episodes in zip(texts, ("5", "3000"), strict=True):
+        states = json.loads((tmp_path / episodes / "result.json").read_text())["policy"]["states"]
+        heading = text.splitlines()[0]
+        assert heading.startswith(" to at_goal, ") == (states[-1] == [3, 3])
+        assert heading.endswith(": at_goal is not reached") == (states[-1] != [3, 3])
+
+
 def test_the_document_on_stdout_is_the_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "run"
     words = ["learn", SPEC, *WORLD, *SHORT, "--demos", DEMOS, "--out", str(out), "--format", "json"]
