@@ -14,7 +14,7 @@ from stlspec.compiler.intervals import swapped, ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
 from stlspec.compiler.quantities import Quantities, Unit
 from stlspec.errors import Diagnostic, Edit, Label, diagnostic
-from stlspec.lang.hints import OPERATOR_WORDS
+from stlspec.lang.hints import PREFIX_WORDS
 from stlspec.lang.nodes import (
     Call,
     Expression,
@@ -56,6 +56,8 @@ FUNCTIONS = {
 NOW = frozenset({"now", "t"})
 MANY_PROBLEMS = 300
 """From here on names are not compared with each other for suggestions: that would cost the square of the text."""
+_NEARLY = 0.8
+"""How alike a word must be to an operator to be taken for a slip in it, not for a function of another language."""
 SAME_UNIT = frozenset({"add", "sub", "min", "max", "hypot"})
 """Operators whose operands are brought to one unit."""
 
@@ -217,7 +219,8 @@ class Inference:
         if self.nameless or any(lost.startswith(name) for lost in self.silent):
             return BROKEN
         templates = [other for other, let in self.declared.lets.items() if let.arguments and self.sees(other)]
-        close = closest(name, [*templates, *FUNCTIONS, *OPERATOR_WORDS])
+        # `alway(p)` reads as a call too; of the operators only those that stand before one formula can be meant.
+        close = closest(name, [*templates, *FUNCTIONS]) or closest(name, PREFIX_WORDS, _NEARLY)
         way = f"did you mean `{close}`?" if close else f"the functions are {', '.join([*FUNCTIONS, *templates[:5]])}"
         edits = (Edit(node.function.span, close),) if close else ()
         return self._report("N103", node.function.span, edits=edits, name=name, help=way)

@@ -17,7 +17,7 @@ from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import TEMPORAL, Failure
 from stlspec.lang.habits import bars, dotted, one_bound, round_range
 from stlspec.lang.headers import blank_in_name, glued_type, no_name, priority
-from stlspec.lang.phrases import PHRASES
+from stlspec.lang.phrases import PHRASES, for_all
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
 from stlspec.lang.tree import span_of
@@ -28,6 +28,8 @@ OPERATOR_WORDS = (
     "always eventually historically once until since unless release next prev wnext wprev not "
     "and or xor implies iff globally finally"
 ).split()
+PREFIX_WORDS = "always eventually historically once globally finally".split()
+"""Operators of one formula that are long enough to be told from the name of a function."""
 _CLOSING = {"LPAR": (")", "RPAR"), "LSQB": ("]", "RSQB"), "LBRACE": ("}", "RBRACE")}
 """For each opening bracket the closing one, and its terminal."""
 _CLOSES = frozenset(terminal for _, terminal in _CLOSING.values())
@@ -363,6 +365,7 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _unit_behind,
     _cut_line,
     _reserved_name,
+    for_all,
     _misspelt_operator,
     _misspelt_clause,
     blank_in_name,

@@ -167,5 +167,17 @@ def quantifier(failure: Failure) -> Diagnostic | None:
     return habit(failure, way, *edits, at=span, wanted="an operator of the language")
 
 
+def for_all(failure: Failure) -> Diagnostic | None:
+    """Describe `for all (p)`, which has no operator of time. Not in the paper: the language."""
+    at, tokens = failure.at, failure.tokens
+    if at < 2 or [str(t) for t in tokens[at - 1 : at + 1]] not in (["for", "all"], ["for", "each"], ["for", "every"]):
+        return None
+    if "for" in failure.names or tokens[0].type not in ("HARD", "SOFT", "LET"):
+        return None
+    whole = span_of(tokens[at - 1]).to(span_of(tokens[at]))
+    way = "write `always` for: at all samples"
+    return habit(failure, way, Edit(whole, "always"), at=whole, wanted="an operator of the language")
+
+
 PHRASES = (spoken_bounds, within, window_behind, quantifier)
 """In the order in which they are asked."""

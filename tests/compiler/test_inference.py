@@ -126,3 +126,13 @@ def test_the_value_of_a_constant_is_known_to_its_users():
 def test_bounds_within_bounds_need_no_deep_stack():
     nested = "always[0, (" * 90 + "b" + ")] c" * 90
     assert codes(nested) == ["T202"]
+
+
+@pytest.mark.parametrize(
+    ("call", "meant"), [("diff", None), ("norm", None), ("rte", "rate"), ("alway", "always"), ("nt", None)]
+)
+def test_an_unknown_function_is_compared_with_functions(call, meant):
+    text = f"signal x\nhard a: x > 1 and {call}(x) > 1"
+    (problem,) = check(parse(SourceText.of("s", text)))[1]
+    begins = f"did you mean `{meant}`?" if meant else "the functions are abs, min,"
+    assert problem.code == "N103" and problem.help.startswith(begins)

@@ -57,3 +57,11 @@ def test_what_can_be_meant_in_two_ways_has_no_fix(statement, way):
 
 def test_a_declared_name_is_no_word_between_bounds():
     assert only("hard a: always[0 to 5] p").help != "write `[0, 5]`"
+
+
+@pytest.mark.parametrize("words", ["for all", "for each", "for every"])
+def test_for_all_is_always(words):
+    text = f"signal x\nhard a: {words} (x > 1)"
+    (problem,) = parse(SourceText.of("s", text)).diagnostics
+    assert (problem.code, problem.help) == ("S001", "write `always` for: at all samples")
+    assert problem.fixes[0].applied(text) == "signal x\nhard a: always (x > 1)"
