@@ -17,6 +17,8 @@ from stlspec.source import SourceText, Span
 
 _LARGEST = 2**62
 _NOISE = 1e-12
+_COUNTED = 1e6
+"""A plain bound above this is hardly a number of samples."""
 Ticks = tuple[int, int | None]
 Report = Callable[..., None]
 
@@ -88,7 +90,20 @@ def _report_plain(
         texts.reverse()
         span = interval.span
     edits = tuple(Edit(n.span, new) for n, new in zip(nodes, texts, strict=True) if new != source.slice(n.span))
-    report("U303", span, unit=time.unit, edits=edits, help=f"write `{_edited(source, span, edits)}`")
+    way = f"write `{_edited(source, span, edits)}`{_in_samples(plain, time)}"
+    report("U303", span, unit=time.unit, edits=edits, help=way)
+
+
+def _in_samples(plain: Sequence[tuple[Expression, Typing]], time: TimeBase) -> str:
+    """Return how long as many samples are as the last plain bound says, for those who count samples."""
+    node, bound = plain[-1]
+    count = round(bound.value) if bound.value is not None and 0 < bound.value < _COUNTED else 0
+    if time.period is None or not isinstance(node, Number) or not count or count != bound.value:
+        return ""
+    # `[0, 500]` at 100 ms is a time in ms without doubt.
+    if time.period > time.ticks_per_unit and count * time.ticks_per_unit % time.period == 0:
+        return ""
+    return f"; {count} sample{'s are' if count > 1 else ' is'} `{_span_of(count, time)}`"
 
 
 def _unit_meant(bounds: tuple[Typing, Typing], time: TimeBase) -> str:
@@ -199,9 +214,20 @@ def _rounded(low: float, high: float, interval: Interval, texts: list[str], time
     if last is not None and first > last:
         report("I404", interval.span, problem="it lies between two samples", help="widen it to hold a sample")
         return None
-    covers = f"samples {first} to {last}" if last is not None else f"samples from {first} on"
+    covers = (
+        f"sample {first}"
+        if first == last
+        else f"samples {first} to {last}"
+        if last is not None
+        else f"samples from {first} on"
+    )
     off = 0 if (low != ticks[0] or ticks[0] % period) else 1
-    report("I403", interval.span, value=texts[off], covers=covers, suggestion=_written(first, last, time))
+    way = f"write {_written(first, last, time)} to say so"
+    if first == last and low != high:
+        # `[0, 5 ms]` at 50 ms hardly means one sample, so `[0, 0]` is no way out.
+        spacing = f"the period is {_span_of(1, time)}" if time.period else "bounds count whole samples"
+        way = f"{spacing}: a window of more than one sample reaches further, as in {_written(first, first + 1, time)}"
+    report("I403", interval.span, value=texts[off], covers=covers, help=way)
     return ticks
 
 
@@ -213,6 +239,10 @@ def _written(first: int, last: int | None, time: TimeBase) -> str:
         if sample is None:
             parts.append("inf")
         else:
-            value = sample * (time.period or 1) / time.ticks_per_unit
-            parts.append(f"{value:g} {time.unit}" if sample else "0")
+            parts.append(_span_of(sample, time) if sample else "0")
     return f"[{', '.join(parts)}]"
+
+
+def _span_of(samples: int, time: TimeBase) -> str:
+    """Return how long so many periods are, in the unit of the spec."""
+    return f"{samples * (time.period or 1) / time.ticks_per_unit:g} {time.unit}"

@@ -34,7 +34,7 @@ CODES: tuple[Code, ...] = (
         "a bound between two samples",
         "warning",
         message="the bound {value} is no multiple of the period: the window covers {covers}",
-        help="write {suggestion} to say so",
+        help="{help}",
         explanation="A window is the set of samples whose time lies in the interval, so a bound between two samples "
         "acts as the sample inside.",
         bad="time 100 ms\n" + _D + "hard safe: always[0, 250 ms] (d > 1)\n",
