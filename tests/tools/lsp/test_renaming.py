@@ -113,6 +113,12 @@ def test_a_statement_that_cannot_be_read_and_may_mean_it_is_mended_first(broken)
     assert renamed(text, "x", "z2") if "y" in broken else True
 
 
+def test_a_statement_of_another_file_that_cannot_be_read_and_may_mean_it_is_mended_first(space, tmp_path):
+    (tmp_path / "other.stl").write_text('use "signals.stl"\nhard c: always (d > \n')
+    with pytest.raises(InputError, match=r"other.stl:2 cannot be read"):
+        across(space, r"d > 1", "gap")
+
+
 def test_the_same_name_changes_nothing():
     assert renamed("signal x\n", "x", "x") == {}
 

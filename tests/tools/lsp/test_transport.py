@@ -113,3 +113,8 @@ def test_a_body_of_the_largest_size_is_read_and_a_larger_one_is_not(monkeypatch)
     assert read(b"Content-Length: 10\r\n\r\n0123456789") == [b"0123456789"]
     (found,) = read(b"Content-Length: 11\r\n\r\n01234567890")
     assert isinstance(found, TooLongError)
+
+
+def test_a_header_that_does_not_end_is_given_up_and_what_comes_after_it_is_read():
+    parts = iter([b"Content-Length: 2\r\nX: ", b"a" * 5000, framed({"id": 1}), b""])
+    assert list(bodies(lambda _: next(parts))) == [b'{"id": 1}']

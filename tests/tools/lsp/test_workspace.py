@@ -3,6 +3,7 @@
 import pytest
 
 from stlspec.lang.incremental import Incremental
+from stlspec.source import Span
 from stlspec.tools.lsp import workspace
 from stlspec.tools.lsp.documents import Change, uri_of
 from stlspec.tools.lsp.positions import Place
@@ -178,3 +179,11 @@ def test_the_checks_are_run_when_they_are_asked_for_and_once(here, monkeypatch):
     assert space.reviewed(uri).model is space.reviewed(uri).model
     assert space.reviewed(uri).diagnostics == ()
     assert ran == [1]
+
+
+def test_a_place_in_a_buffer_counts_its_byte_order_mark():
+    space = Workspace()
+    space.open("untitled:1", 1, "\ufeffsignal x\n")
+    source = space.reviewed("untitled:1").syntax.source
+    found = space.location(source, Span(7, 8))
+    assert (found.start, found.end) == (Place(0, 8), Place(0, 9))
