@@ -103,3 +103,13 @@ def test_a_warning_can_be_ignored_on_its_line(line, after):
 def test_a_line_with_a_remark_of_its_own_and_an_error_are_not_ignored():
     text = "signal x\nsignal y  # for later\nhard a: always (z > 0)\n"
     assert [a.title for a in actions(reviewed(text), 0, len(text)) if a.title.startswith("Ignore")] == []
+
+
+def test_what_is_wrong_in_a_used_file_is_no_action_in_the_file_that_uses_it(tmp_path):
+    (tmp_path / "lib.stl").write_text("signal x\nlet f = x = 1\n")
+    space = Workspace()
+    uri = (tmp_path / "a.stl").as_uri()
+    space.open(uri, 1, 'use "lib.stl"\nhard a: always (x > 1)\n')
+    known = space.reviewed(uri)
+    assert "S008" in [found.code for found in known.diagnostics]
+    assert [action.title for action in actions(known, 0, 99) if action.found.code == "S008"] == []
