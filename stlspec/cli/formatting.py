@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from stlspec.cli.options import FormatOption
+from stlspec.cli.options import FormatOption, standard_input
 from stlspec.cli.output import Format, print_diagnostics, print_json
 from stlspec.compiler import files
 from stlspec.compiler.printing import counted
@@ -83,7 +83,7 @@ def _formatted(name: str) -> _Formatted:
     data = b""
     try:
         if name == _STDIN:
-            name, data = _STDIN_NAME, sys.stdin.buffer.read(files.LARGEST_SPEC + 1)
+            name, data = _STDIN_NAME, standard_input().read(files.LARGEST_SPEC + 1)
             if len(data) > files.LARGEST_SPEC:
                 limit = files.LARGEST_SPEC
                 raise UsageError([diagnostic("S093", file=name, size=len(data), limit=limit)])

@@ -9,6 +9,7 @@ from typing import Annotated, BinaryIO
 
 import typer
 
+from stlspec.cli.options import standard_input
 from stlspec.errors import UsageError, diagnostic
 
 
@@ -23,7 +24,7 @@ def lsp(
             raise UsageError([diagnostic("D847", what="the language server", extra="lsp")]) from None
         raise
     assert stdio
-    if sys.stdin.isatty():
+    if standard_input().isatty():
         print("this is for an editor to start: it waits for messages on stdin; Ctrl-C ends it", file=sys.stderr)
     with _stdout_apart() as out:
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from stlspec.cli.options import FormatOption, Params, read_params
+from stlspec.cli.options import FormatOption, Params, read_params, standard_input
 from stlspec.cli.output import Format, error_document, warn
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, StlspecError, diagnostic
@@ -80,8 +80,8 @@ def _follow(spec: Path, reading: Reading, ends: Ends, params: dict[str, str], ou
     if reading is Reading.EVERY:
         warn(late_warnings(bundle))
     json_wanted = output is Format.JSON
-    columns = _columns(bundle)
-    for line, values in _samples(iter(lambda: sys.stdin.buffer.readline(_LONGEST_LINE + 1), b"")):
+    columns, stream = _columns(bundle), standard_input()
+    for line, values in _samples(iter(lambda: stream.readline(_LONGEST_LINE + 1), b"")):
         sample = {name: values[column] for name, column in columns.items() if column in values}
         try:
             told = monitor.update(sample, values.get("time"))

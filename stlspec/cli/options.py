@@ -3,9 +3,10 @@
 In: words of the command line. Out: mappings and environments, or a usage diagnostic that names the word.
 """
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, BinaryIO, TextIO
 
 import typer
 
@@ -20,6 +21,17 @@ FormatOption = Annotated[Format, typer.Option("--format", help="text for a perso
 
 MANY = ("--demos",)
 """Options that take every path up to the next option."""
+
+
+def standard_input() -> BinaryIO:
+    """Return stdin.
+
+    Raises: UsageError D880: whoever started this has closed it.
+    """
+    stream: TextIO | None = sys.stdin
+    if stream is None:
+        raise UsageError([diagnostic("D880", what="stdin is closed", help="pipe something in, or use < FILE")])
+    return stream.buffer
 
 
 def spare_inputs(out: Path, inputs: Sequence[str | Path], option: str = "-o") -> None:

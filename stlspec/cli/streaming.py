@@ -4,10 +4,10 @@ In: a spec, CSV on stdin, options. Out: a ranking of one. Options that need the 
 before the first sample is read.
 """
 
-import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from stlspec.cli.options import standard_input
 from stlspec.errors import UsageError, diagnostic
 
 if TYPE_CHECKING:
@@ -39,4 +39,4 @@ def score_stdin(bundle: "Bundle", end: str, on_nan: "OnNan") -> "Ranking":
     """Score what comes on stdin. Arguments and errors as for `many.stream.score_stream`."""
     from stlspec.many.stream import score_stream
 
-    return score_stream(bundle, sys.stdin.buffer, end=end, on_nan=on_nan)
+    return score_stream(bundle, standard_input(), end=end, on_nan=on_nan)

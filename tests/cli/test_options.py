@@ -2,8 +2,22 @@
 
 import pytest
 
+from stlspec.cli.main import run
 from stlspec.cli.options import expand_many, read_params
 from stlspec.errors import UsageError
+
+
+@pytest.mark.parametrize("words", ["score s.stl -", "monitor s.stl", "fmt -", "lsp"])
+def test_closed_stdin_is_said(words, tmp_path, monkeypatch, capsys):
+    if words == "lsp":
+        pytest.importorskip("pygls")
+    (tmp_path / "s.stl").write_text("signal x\nhard a: always (x > 0)\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.stdin", None)
+    assert run(words.split()) == 2
+    out, err = capsys.readouterr()
+    assert "error[D880]: stdin is closed" in err
+    assert out == ""
 
 
 @pytest.mark.parametrize(
