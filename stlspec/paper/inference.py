@@ -99,4 +99,5 @@ def correlation(values: Sequence[float], truth: Sequence[float]) -> float | None
     a, b = np.asarray(values, dtype=np.float64), np.asarray(truth, dtype=np.float64)
     if np.ptp(a) == 0 or np.ptp(b) == 0 or not np.isfinite(a).all():
         return None
-    return float(np.corrcoef(a, b)[0, 1])
+    # Scaled first: what another program found may be so large that its square is none.
+    return float(np.corrcoef((a - a.min()) / np.ptp(a), b)[0, 1])

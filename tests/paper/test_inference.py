@@ -57,6 +57,8 @@ def test_the_ground_truth_is_that_of_the_paper():
         ([1, 1, 1], None),
         ([1, nan, 2], None),
         ([1, 0, 1], 0.0),
+        ([-1e299, 0.0, 1e299], 1.0),
+        ([0.0, 1e-320, 2e-320], 1.0),
     ],
 )
 def test_correlation_counts_neither_scale_nor_offset(values, expected):
