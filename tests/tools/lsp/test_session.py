@@ -229,4 +229,5 @@ def test_a_fault_of_ours_is_an_answer_and_a_line_in_the_log(monkeypatch):
     pair.send({"id": 2, "method": "shutdown"}, {"method": "exit"})
     assert pair.end() == 0
     assert b"a fault of stlspec: ZeroDivisionError" in pair.written
-    assert [line.split(",")[0] for line in log] == ["textDocument/hover failed", "diagnostics failed"]
+    # which comes first is a matter of the machine: diagnostics are worked out when nothing waits
+    assert sorted(line.split(",")[0] for line in log) == ["diagnostics failed", "textDocument/hover failed"]
