@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Declared
+from stlspec.compiler.printing import number_text
 from stlspec.errors import Diagnostic, Label, diagnostic
 from stlspec.lang.nodes import (
     LetStatement,
@@ -22,6 +23,8 @@ from stlspec.lang.parse import Syntax
 from stlspec.lang.statements import TIME_UNITS
 from stlspec.lang.units import NANOSECONDS, STEP
 from stlspec.source import Span
+
+_HERTZ = {"Hz": 1, "kHz": 1e3, "MHz": 1e6}
 
 
 def declare(syntax: Syntax, problems: list[Diagnostic]) -> Declared:
@@ -108,6 +111,16 @@ def _agreed(syntax: Syntax, time: TimeBase | None, problems: list[Diagnostic]) -
     return time if len(problems) == before else None
 
 
+def _as_period(number: float | None, unit: str) -> str:
+    """Say which period a rate is, as sensors are described."""
+    rate = (number or 0) * _HERTZ.get(unit, 0)
+    if not 0 < rate <= NANOSECONDS["s"]:
+        return ""
+    name = next(name for name in ("s", "ms", "us", "ns") if NANOSECONDS["s"] / rate >= NANOSECONDS[name])
+    period = NANOSECONDS["s"] / rate / NANOSECONDS[name]
+    return f"; a rate of {number_text(number or 0)} {unit} is `time {period:.9g} {name}`"
+
+
 def _is_time(statement: Statement) -> bool:
     return isinstance(statement, TimeStatement)
 
@@ -119,9 +132,8 @@ def _time_base(syntax: Syntax, statement: TimeStatement, problems: list[Diagnost
         return TimeBase("step", STEP, 1)
     if unit not in NANOSECONDS:
         allowed: Sequence[str] = (STEP, *TIME_UNITS) if number is None else TIME_UNITS
-        problems.append(
-            diagnostic("U305", source=syntax.source, span=statement.unit.span, unit=unit, units=", ".join(allowed))
-        )
+        units = ", ".join(allowed) + _as_period(number, unit)
+        problems.append(diagnostic("U305", source=syntax.source, span=statement.unit.span, unit=unit, units=units))
         return None
     ticks = NANOSECONDS[unit]
     if number is None:

@@ -109,13 +109,25 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
         name = dotted(failure)
         if name:
             return failure.error("S005", character="`.`", help=f"a name has no dots: write `{name}`")
-        sign = "," if str(token) == ";" and failure.brackets else _SIGNS.get(str(token))
-        way = f"write `{sign}` in its place" if sign else "remove it; words and signs of the language are plain ASCII"
-        return failure.error("S005", character=quoted(str(token)), help=way)
+        return failure.error("S005", character=quoted(str(token)), help=_way_out(failure, str(token)))
     if token.type == "WALRUS":
         name = str(failure.tokens[failure.at - 1]) if failure.at else "p"
         return failure.error("S012", name=name)
     return None
+
+
+def _way_out(failure: Failure, character: str) -> str:
+    """Say what to do about a character that no word and no sign has."""
+    before = failure.tokens[failure.at - 1] if failure.at else None
+    if before is not None and before.type == "UNIT_WORD":
+        return f'write `"{character}"`: a unit that is no word stands in quotes'
+    glued = before is not None and failure.token is not None and before.end_pos == failure.token.start_pos
+    if character == "'" and glued and before is not None and is_word(before):
+        return f"write `rate({before})` for a derivative; names have no `{character}`"
+    sign = "," if character == ";" and failure.brackets else _SIGNS.get(character)
+    if sign:
+        return f"write `{sign}` in its place"
+    return "remove it" if character.isascii() else "remove it; words and signs of the language are plain ASCII"
 
 
 def _no_statement(failure: Failure) -> Diagnostic | None:

@@ -15,6 +15,12 @@ def declared(text):
     return declare(parse(SourceText.of("s", text)), problems), [d.code for d in problems]
 
 
+def help_of(text):
+    problems = []
+    declare(parse(SourceText.of("s", text)), problems)
+    return problems[0].help
+
+
 def test_each_kind_of_name_has_its_table_and_its_place():
     found, problems = declared('spec s "T"\nsignal x\nparam p\nlet q = x > p\nhard a: q\nsoft b: q')
     assert problems == []
@@ -65,6 +71,18 @@ def test_the_time_statement_gives_the_time_base(statement, expected):
 def test_a_wrong_time_statement_is_reported_and_the_time_base_is_not_known(statement, code):
     found, problems = declared(f"signal x\n{statement}")
     assert (problems, found.time_known) == ([code], False)
+
+
+@pytest.mark.parametrize(
+    ("written", "period"), [("10 Hz", "100 ms"), ("60 Hz", "16.6666667 ms"), ("0.5 kHz", "2 ms"), ("0.1 Hz", "10 s")]
+)
+def test_a_rate_is_answered_with_its_period(written, period):
+    assert help_of(f"time {written}").endswith(f"; a rate of {written} is `time {period}`")
+
+
+@pytest.mark.parametrize("rate", ["0 Hz", "1e12 MHz", "2 furlongs"])
+def test_a_rate_without_a_period_is_not(rate):
+    assert "rate" not in help_of(f"time {rate}")
 
 
 def test_a_spec_or_time_statement_out_of_place_is_reported_once():

@@ -19,6 +19,7 @@ def only(text):
         ("hard a: always (if x > 5 then x < 7)", "S001", "write `p implies q` for: if p then q"),
         ("hard a: eventually[5 s] x > 1", "S001", "write `[0, 5 s]`"),
         ("hard a: always (|x - 1| < 5)", "S001", "write `abs(x - 1)`"),
+        ("signal y unit %", "S005", 'write `"%"`: a unit that is no word stands in quotes'),
         ("signal y in (-1, 5)", "S025", "write [-1, 5]"),
         ("signal y in (0, 5]", "S025", "write [0, 5]"),
     ],
