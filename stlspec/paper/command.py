@@ -17,7 +17,7 @@ from stlspec.errors import InputError, UsageError, diagnostic
 from stlspec.paper import figures, journal, report
 from stlspec.paper.budgets import FULL, QUICK, Budget
 from stlspec.paper.experiments import EXPERIMENTS, Experiment
-from stlspec.paper.spread import short
+from stlspec.paper.spread import duration
 
 
 def run(options: argparse.Namespace) -> None:
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> None:
     results = {name: record.result for name, record in records.items()}
     for heading, text in (("Claims of the paper", report.verdicts(results)), *report.sections(results)):
         print(f"{heading}\n\n{text}\n")
-    say(f"{short((time.perf_counter() - began) / 60)} minutes; the report is {out / 'report.md'}")
+    say(f"{duration(time.perf_counter() - began)}; the report is {out / 'report.md'}")
 
 
 def chosen(only: Sequence[str]) -> list[Experiment]:
@@ -91,7 +91,7 @@ def measure(experiment: Experiment, budget: Budget, out: Path, *, jobs: int, fre
     """
     known = None if fresh else journal.load(out, experiment.name, budget.to_json())
     if known is not None and not _was_skipped(known):
-        say(f"{experiment.name}: kept from before, {short(known.seconds)} s")
+        say(f"{experiment.name}: kept from before, {duration(known.seconds)}")
         return known
     say(f"{experiment.name}: {experiment.title}")
     shown = [0.0]
@@ -107,7 +107,7 @@ def measure(experiment: Experiment, budget: Budget, out: Path, *, jobs: int, fre
     loads = (load, journal.load_of_machine())
     record = journal.Record(experiment.name, budget.to_json(), seconds, loads, journal.machine(), result)
     journal.save(out, record)
-    say(f"  {short(seconds)} s")
+    say(f"  {duration(seconds)}")
     return record
 
 

@@ -7,12 +7,13 @@ out; verdicts come from `claims`.
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from stlspec.compiler.printing import counted
 from stlspec.paper import tables
 from stlspec.paper.claims import CLAIMS, Results, Verdict, judge, rows_of
 from stlspec.paper.experiments import PLAIN, STANDARD, rows_from_json
 from stlspec.paper.handmade import BY_DISTANCE
 from stlspec.paper.journal import Record
-from stlspec.paper.spread import short
+from stlspec.paper.spread import duration
 from stlspec.paper.worth import NOTHING
 
 TITLE = "Learning from Demonstrations using Signal Temporal Logic, reproduced"
@@ -89,9 +90,9 @@ def _measured(records: Mapping[str, Record]) -> str:
     return "\n".join([
         f"- Budget: {budget['name']}: {budget['seeds']} seeds; on Mountain Car {cars} bins, "
         f"{budget['car_episodes']} episodes each.",
-        f"- Time: {short(seconds / 60)} minutes in all, for {len(records)} experiments.",
+        f"- Time: {duration(seconds)} in all, for {counted(len(records), 'experiment')}.",
         f"- Machine: {kept}.",
-        f"- Load while measuring: {min(loads)} to {max(loads)} processes wanting a processor.",
+        f"- Processes that wanted a processor while measuring: {min(loads)} to {max(loads)}.",
     ])  # fmt: skip
 
 

@@ -52,3 +52,8 @@ def short(value: float) -> str:
     if abs(value) >= 999.5:
         return f"{value:,.0f}".replace(",", " ")
     return f"{value:.3g}"
+
+
+def duration(seconds: float) -> str:
+    """Write a time in seconds up to two minutes, in minutes from there on."""
+    return f"{short(seconds)} s" if seconds < 120 else f"{short(seconds / 60)} minutes"

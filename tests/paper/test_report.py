@@ -16,7 +16,7 @@ GOLDEN = """\
 - Budget: tiny: 2 seeds; on Mountain Car 1 with 50, 1 with 75, 1 with 100 bins, 2 episodes each.
 - Time: 2 minutes in all, for 2 experiments.
 - Machine: processors 2, python 3.11.0, stlspec 0.1.0.
-- Load while measuring: 0.5 to 1.5 processes wanting a processor.
+- Processes that wanted a processor while measuring: 0.5 to 1.5.
 """
 
 

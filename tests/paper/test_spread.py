@@ -2,7 +2,7 @@ from math import inf
 
 import pytest
 
-from stlspec.paper.spread import Spread, ratios, short, spread
+from stlspec.paper.spread import Spread, duration, ratios, short, spread
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,10 @@ def test_numbers_are_written_short(value, text):
 
 def test_a_spread_is_written_as_median_and_quartiles():
     assert str(Spread(1.0, 2.5, inf)) == "2.5 (1 to never)"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(0.5, "0.5 s"), (119, "119 s"), (120, "2 minutes"), (4800, "80 minutes")]
+)
+def test_a_time_is_written_in_seconds_or_minutes(seconds, text):
+    assert duration(seconds) == text
