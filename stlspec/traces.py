@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stlspec.columns import first_true, snapped, to_column, unmasked
 from stlspec.compiler.bundle import Signal, TimeBase
-from stlspec.compiler.printing import number_text
+from stlspec.compiler.printing import counted, number_text
 from stlspec.errors import DataError, diagnostic
 
 Floats = NDArray[np.float64]
@@ -217,7 +217,9 @@ def _common_shape(
         if len(shape) != len(expected):
             raise _error("D813", file, what=f"'{name}'", problem=f"is not laid out like '{other}'")
         if shape[0] != expected[0]:
-            raise _error("D805", file, signal=name, length=shape[0], other=other, expected=expected[0])
+            raise _error(
+                "D805", file, signal=name, samples=counted(shape[0], "sample"), other=other, expected=expected[0]
+            )
         if shape != expected:
             problem = f"has {shape[1]} traces, but '{other}' has {expected[1]}"
             raise _error("D813", file, what=f"'{name}'", problem=problem)
@@ -246,7 +248,7 @@ def sample_ticks(
     if stamps.ndim != 1:
         raise _error("D813", file, what="'time'", problem="has one row for each trace, but the signals do not")
     if len(stamps) != n:
-        raise _error("D805", file, signal="time", length=len(stamps), other="signals", expected=n)
+        raise _error("D805", file, signal="time", samples=counted(len(stamps), "sample"), other="signals", expected=n)
     with np.errstate(all="ignore"):
         ticks = (stamps - stamps[0]) * base.ticks_per_unit
     kept = np.isfinite(stamps) & (np.abs(ticks) < _LONGEST_TICKS)

@@ -161,7 +161,7 @@ def test_a_sample_outside_its_declared_range_is_refused():
 
 def test_signals_and_time_are_of_one_length():
     assert "'y' has 2 samples, but 'x' has 1" in refused("D805", STEP, [X, Signal("y")], {"x": [1], "y": [1, 2]})
-    assert "'time' has 1 samples" in refused("D805", STEP, [X], {"x": [1, 2]}, [0])
+    assert "'time' has 1 sample" in refused("D805", STEP, [X], {"x": [1, 2]}, [0])
 
 
 @pytest.mark.parametrize(

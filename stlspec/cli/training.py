@@ -169,12 +169,12 @@ def parse_state(text: str) -> int | tuple[int, int]:
 
     Not in the paper: the command line.
 
-    Raises: UsageError D871: it is neither.
+    Raises: UsageError D880: it is neither.
     """
     found = re.fullmatch(r"\s*[\[(]?\s*(\d{1,9})\s*(?:,\s*(\d{1,9})\s*)?[\])]?\s*", text, re.ASCII)
     if found is None:
-        allowed = "a number, or row and column as in 2,3"
-        raise UsageError([diagnostic("D871", option="--explain", value=text[:40], allowed=allowed)])
+        what = f"'{text[:40]}' is no state: a state is a number, or row and column"
+        raise UsageError([diagnostic("D880", what=what, help="write --explain 12, or --explain 2,3 on a map")])
     first, second = found.groups()
     return int(first) if second is None else (int(first), int(second))
 

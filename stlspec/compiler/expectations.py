@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 
 from stlspec.compiler.extents import Extents
 from stlspec.compiler.model import Declared, Model
-from stlspec.compiler.printing import number_text
+from stlspec.compiler.printing import counted, number_text
 from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.nodes import (
     Column,
@@ -115,7 +115,9 @@ def _verdict(syntax: Syntax, declared: Declared, statement: VerdictExpectation, 
         problems += _missing(source, declared, name, data)
         samples = len(data.columns[0].samples)
         if at is not None and not -samples <= at.value < samples:
-            problems.append(_value(source, at, f"the data has {samples} samples", f"write a number below {samples}"))
+            problems.append(
+                _value(source, at, f"the data has {counted(samples, 'sample')}", f"write a number below {samples}")
+            )
 
 
 def _no_requirement(syntax: Syntax, declared: Declared, name: Name) -> Diagnostic | None:
@@ -161,7 +163,8 @@ def _inline(syntax: Syntax, declared: Declared, data: InlineData, problems: list
                 [] if silent else [diagnostic("N101", source=source, span=column.name.span, name=name, help=way)]
             )
         elif len(column.samples) != len(first.samples):
-            what = f"`{name}` has {len(column.samples)} samples, and `{first.name.text}` has {len(first.samples)}"
+            found = counted(len(column.samples), "sample")
+            what = f"`{name}` has {found}, and `{first.name.text}` has {len(first.samples)}"
             problems.append(_value(source, column, what, "give each column one value for every sample"))
         else:
             problems += _values(source, declared, column)

@@ -55,7 +55,7 @@ CODES: tuple[Code, ...] = (
         "D805",
         "signals of unequal length",
         "error",
-        message="'{signal}' has {length} samples, but '{other}' has {expected}",
+        message="'{signal}' has {samples}, but '{other}' has {expected}",
         help="all signals of one trace have a value at every sample",
         explanation="A trace is a table: one row a sample, one column a signal, no holes.",
         bad='{"signals": {"x": [1, 2, 3], "y": [1, 2]}}',

@@ -13,12 +13,19 @@ from stlspec.errors import StlspecError, render
 
 MOST_JOBS = 256
 
+NAMES = (
+    "table-1", "irl-demos", "demonstrations", "grids", "two-goals", "lakes", "hand-crafted", "transfer", "ablation",
+    "rewards", "letter", "car",
+)  # fmt: skip
+"""What can be asked for; they stand here since the experiments take long to import. `car` is all of `car-50` and on."""
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the options."""
     found = argparse.ArgumentParser(
         prog="python -m stlspec.paper",
         description="Run the experiments of Puranic, Deshmukh and Nikolaidis (CoRL 2020) again, and write a report.",
+        epilog=f"Experiments: {', '.join(NAMES)}.",
         allow_abbrev=False,
     )
     found.add_argument("--quick", action="store_true", help="a look in a few minutes: 3 seeds, short training")

@@ -9,8 +9,10 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import venv
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from stlspec.errors import UsageError, diagnostic, render
@@ -54,6 +56,7 @@ def install(folder: Path, packages: Sequence[str], seconds: float = SECONDS) -> 
     if found is not None:
         return found
     making = folder.with_name(f".{folder.name}.{os.getpid()}")
+    _sweep(making.parent, f".{folder.name}.*", 2 * seconds)
     try:
         making.parent.mkdir(parents=True, exist_ok=True)
         venv.create(making, with_pip=True, clear=True, symlinks=os.name != "nt")
@@ -68,6 +71,14 @@ def install(folder: Path, packages: Sequence[str], seconds: float = SECONDS) -> 
     finally:
         shutil.rmtree(making, ignore_errors=True)
     return _python(folder)
+
+
+def _sweep(parent: Path, pattern: str, seconds: float) -> None:
+    """Remove what installations left that were killed: nobody works for so long on a folder, which holds 2 GB."""
+    for left in parent.glob(pattern):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > seconds:
+                shutil.rmtree(left, ignore_errors=True)
 
 
 def _python(folder: Path) -> Path:

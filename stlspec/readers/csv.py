@@ -27,6 +27,8 @@ from stlspec.readers.model import (
 
 FLOATS_TELL_APART = 2.0**53
 """Whole numbers below this are the same as floats."""
+_OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
+"""A header of one column that holds one of these was meant as several: a semicolon, or a tab, as spreadsheets write."""
 _EXPECTED = "a header with the names of the columns, then one row a sample"
 
 
@@ -137,6 +139,10 @@ def header_of(row: Sequence[str], path: Path) -> list[str]:
     if all(isinstance(number_of_word(name), float) for name in names):
         hint = "the first row names the columns, such as time,x,y"
         raise refusal("D835", path, reason="the first row holds numbers, not names of columns", help=hint)
+    for separator, called in _OTHER_SEPARATORS.items():
+        if len(names) == 1 and separator in names[0]:
+            hint = "write the file again with commas between columns, and a point in decimal numbers"
+            raise refusal("D835", path, reason=f"the columns of the header are separated by {called}", help=hint)
     twice = repeated(names)
     if twice is not None:
         reason = f"the header has the column '{twice[:60]}' twice"
@@ -147,9 +153,6 @@ def header_of(row: Sequence[str], path: Path) -> list[str]:
 def ragged(row: Sequence[str], header: Sequence[str], line: int, path: Path) -> NoReturn:
     """Refuse a row that is not as long as the header. Not in the paper: a file format. Raises: DataError D834."""
     hint = "give the row one value for every column"
-    for separator, called in ((";", "semicolons"), ("\t", "tabs")):
-        if len(header) == 1 and separator in header[0]:
-            hint = f"the columns seem to be separated by {called}; separate them by commas"
     found = f"{len(row)} column{'s' if len(row) != 1 else ''}"
     raise refusal("D834", path, line=line, found=found, expected=len(header), help=hint)
 

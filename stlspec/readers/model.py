@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from stlspec.compiler.printing import counted
 from stlspec.errors import DataError, Diagnostic, diagnostic
 
 BYTES_AT_MOST = 2**28
@@ -213,7 +214,9 @@ def checked(recording: Recording, file: Path) -> Recording:
     if first is None or not any(lengths.values()):
         raise refusal("D803", file, where=where)
     problems: list[Diagnostic] = [
-        diagnostic("D805", file=str(file), signal=name, length=n, other=first, expected=lengths[first])
+        diagnostic(
+            "D805", file=str(file), signal=name, samples=counted(n, "sample"), other=first, expected=lengths[first]
+        )
         for name, n in lengths.items()
         if n != lengths[first]
     ]

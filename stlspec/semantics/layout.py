@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stlspec.columns import unmasked
+from stlspec.compiler.printing import counted
 from stlspec.errors import DataError, diagnostic
 from stlspec.traces import whole_stamps
 
@@ -120,7 +121,16 @@ def _row_length(columns: Mapping[str, Any], number: int, file: str | None) -> in
         elif length != expected:
             place = f"trace {number}" if file is None else f"{file}, trace {number}"
             raise DataError(
-                [diagnostic("D805", file=place, signal=name, length=length, other=other, expected=expected)]
+                [
+                    diagnostic(
+                        "D805",
+                        file=place,
+                        signal=name,
+                        samples=counted(length, "sample"),
+                        other=other,
+                        expected=expected,
+                    )
+                ]
             )
     return expected
 

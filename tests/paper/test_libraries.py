@@ -1,5 +1,6 @@
 """Environments of their own: made whole or not at all, found again, and a clear word where there is no network."""
 
+import os
 import sys
 
 import pytest
@@ -35,6 +36,16 @@ def test_an_environment_is_made_once_and_found_again(tmp_path, monkeypatch):
     install(target, ("x==2",))
     assert asked == [("x==1",), ("x==2",)]
     assert [path.name for path in target.parent.iterdir()] == ["one"]
+
+
+def test_what_a_killed_installation_left_is_swept_away_when_nobody_can_be_at_work_on_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(libraries, "_pip", lambda python, packages, seconds: None)
+    killed, at_work = tmp_path / ".one.12", tmp_path / ".one.13"
+    for folder in (killed, at_work):
+        (folder / "bin").mkdir(parents=True)
+    os.utime(killed, (0, 0))
+    install(tmp_path / "one", ("x==1",))
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".one.13", "one"]
 
 
 def test_without_a_network_nothing_is_left_and_the_reason_is_told(tmp_path):

@@ -3,7 +3,9 @@ import sys
 
 import pytest
 
-from stlspec.paper.__main__ import main, parser
+from stlspec.paper import command
+from stlspec.paper.__main__ import NAMES, main, parser
+from stlspec.paper.experiments import EXPERIMENTS
 
 
 def test_options_have_defaults():
@@ -32,6 +34,13 @@ def test_a_stop_ends_with_130_and_says_how_to_go_on(monkeypatch, capsys):
     monkeypatch.setattr("stlspec.paper.command.run", stop)
     assert main([]) == 130
     assert "run it again" in capsys.readouterr().err
+
+
+def test_help_names_what_can_be_asked_for():
+    asked = {experiment.name for experiment in command.chosen(NAMES)}
+    assert asked == set(EXPERIMENTS)
+    words = parser().format_help().replace("\n", " ").split()
+    assert {*NAMES} <= {word.strip(",.") for word in words}
 
 
 def test_help_loads_nothing_heavy():

@@ -75,7 +75,7 @@ def test_a_word_in_a_signal_is_left_for_the_trace_to_refuse():
         ({"states": [1], "time": "now"}, "D837", "'time'"),
         ({"signals": {}}, "D803", "no samples"),
         ({"signals": {"x": []}}, "D803", "no samples"),
-        ({"signals": {"x": [1, 2], "y": [1]}}, "D805", "'y' has 1 samples, but 'x' has 2"),
+        ({"signals": {"x": [1, 2], "y": [1]}}, "D805", "'y' has 1 sample, but 'x' has 2"),
         ({"signals": {"x": [1, 2]}, "states": [1]}, "D805", "'states' has 1"),
         ({"states": [1, 2], "actions": [0, 0]}, "D839", "2 actions for 2 samples"),
     ],

@@ -72,7 +72,7 @@ def test_parts_of_unequal_length_are_all_named():
         checked(wrong, FILE)
     assert codes(error) == ["D805", "D805"]
     assert "'y' has 2 samples, but 'time' has 3" in str(error.value)
-    assert "'states' has 1 samples" in str(error.value)
+    assert "'states' has 1 sample" in str(error.value)
 
 
 def test_there_is_one_action_less_than_samples():

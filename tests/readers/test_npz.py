@@ -102,7 +102,7 @@ def test_an_array_that_comes_twice_is_refused(file):
         ({"x": np.zeros((2, 2))}, "D837", "signal 'x' is an array of shape (2, 2)"),
         ({"x": np.float64(3)}, "D837", "signal 'x'"),
         ({"x": np.zeros(2, dtype=complex)}, "D837", "complex128"),
-        ({"x": [1, 2], "y": [1]}, "D805", "'y' has 1 samples"),
+        ({"x": [1, 2], "y": [1]}, "D805", "'y' has 1 sample"),
         ({"x": [1, 2], "states": 3}, "D837", "'states'"),
         ({"x": [1, 2], "actions": [1, 2]}, "D839", "2 actions for 2 samples"),
         ({"x": [1, 2], "episode": [0]}, "D805", "'episode' has 1"),
