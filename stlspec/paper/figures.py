@@ -22,6 +22,7 @@ from stlspec.paper.claims import Results, rows_of
 from stlspec.paper.experiments import OPTIONS, PLAIN, SHAPED, STANDARD, UNMASKED, unseen
 from stlspec.paper.maps import GOALS, OBSTACLES
 from stlspec.paper.runs import Row, groups
+from stlspec.paper.spread import spread
 from stlspec.rewards import ranked_states, reward_of
 
 COLOURS = {SHAPED: "#2b6cb0", UNMASKED: "#7d5ba6", PLAIN: "#e0a458", STANDARD: "#c0392b"}
@@ -129,20 +130,25 @@ def draw_curves(panels: Sequence[tuple[str, Mapping[str, Sequence[Row]]]], title
 def draw_dots(
     by_group: Mapping[str, Mapping[str, Sequence[Row]]], of: Callable[[Row], float | None], label: str, place: Path
 ) -> None:
-    """Draw one dot a run, by group and method, with the median as a line; what never happened is left out."""
+    """Draw one dot a run, by group and method, the median as a line; what never happened is later than all dots."""
+    from matplotlib.ticker import LogLocator
+
     figure = figure_of(max(6.6, 1.2 + 2.2 * len(by_group)), 3.6)
     ax = figure.subplots()
     draw = np.random.default_rng(0)
     for place_of_group, by in enumerate(by_group.values()):
         for number, (method, rows) in enumerate(by.items()):
-            values = [v for v in map(of, rows) if v is not None and isfinite(v)]
+            every = list(map(of, rows))
+            values = [v for v in every if v is not None and isfinite(v)]
             x = place_of_group + (number - (len(by) - 1) / 2) * 0.8 / len(by)
             colour, name = COLOURS[method], LABELS[method] if place_of_group == 0 else None
             ax.plot(x + draw.uniform(-0.05, 0.05, len(values)), values, ".", color=colour, alpha=0.55, label=name)
-            if values:
-                ax.plot([x - 0.08, x + 0.08], [np.median(values)] * 2, color=colour, linewidth=2.5)
+            middle = spread(every).median
+            if isfinite(middle):
+                ax.plot([x - 0.08, x + 0.08], [middle] * 2, color=colour, linewidth=2.5)
     ax.set_xticks(range(len(by_group)), list(by_group))
     ax.set_yscale("log")
+    ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.yaxis.set_major_formatter("{x:.0f}")
     ax.yaxis.set_minor_formatter("")
     _dress(ax, "", "")
@@ -234,7 +240,7 @@ def _wanted(results: Results) -> dict[str, Callable[[Path], None]]:
             wanted[f"unseen-{name}.png"] = _panels(partial(unseen_panels, name), title)
     for name in ("grids", "lakes"):
         if name in results:
-            rows = rows_of(results, name)
+            rows = {case_of(group).title: by for group, by in rows_of(results, name).items()}
             wanted[f"steps-{name}.png"] = partial(draw_dots, rows, lambda row: row.to_success, "steps to success")
     return wanted | _curves(results)
 
