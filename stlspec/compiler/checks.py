@@ -26,7 +26,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import Dimension, dimension
+from stlspec.lang.units import Dimension, dimension, respelt
 from stlspec.source import SourceText, Span
 
 _TYPES = ("real", "bool")
@@ -143,14 +143,13 @@ def _unit_of(inference: Inference, statement: SignalStatement) -> Dimension | No
         return {}
     unit = dimension(statement.unit.text)
     if unit is None:
-        problem = diagnostic(
-            "U302",
-            source=inference.source,
-            span=statement.unit.span,
-            unit=statement.unit.text,
-            help='write it like "m/s" or "m/s**2"',
+        written, span = respelt(statement.unit.text), statement.unit.span
+        way = 'write it like "m/s" or "m/s**2"' if written is None else f'write `"{written}"`'
+        edits = () if written is None else (Edit(span, f'"{written}"'),)
+        text = statement.unit.text
+        inference.problems.append(
+            diagnostic("U302", source=inference.source, span=span, edits=edits, unit=text, help=way)
         )
-        inference.problems.append(problem)
     return unit
 
 

@@ -35,7 +35,7 @@ from stlspec.lang.nodes import (
 )
 from stlspec.lang.parse import Syntax
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import NANOSECONDS, Dimension, dimension
+from stlspec.lang.units import NANOSECONDS, Dimension, dimension, is_unit_word
 from stlspec.source import Span
 
 COMPARISONS = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "assign"})
@@ -177,6 +177,10 @@ class Inference:
             return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
         way, edits = for_unknown(name, node.span, [*self.known(), "now", "true", "false", "inf"] if few else ())
+        before = self.source.text[max(0, node.span.start - 3) : node.span.start].rstrip()
+        if is_unit_word(name) and before.endswith(("*", "/")):
+            way = f"if `{name}` is meant as a unit: leave the unit out, and a number takes that of the other side"
+            edits = ()
         return self._report("N101", node.span, edits=edits, name=name, help=way)
 
     def _index(self, node: Index) -> Typing:

@@ -14,7 +14,7 @@ from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.model import Typing
 from stlspec.lang.nodes import Expression, Group, Number, Prefix
 from stlspec.lang.spelling import closest
-from stlspec.lang.units import KNOWN, NANOSECONDS, SPELLINGS, Dimension, spell
+from stlspec.lang.units import COMPOUNDS, KNOWN, NANOSECONDS, SPELLINGS, Dimension, spell
 from stlspec.source import Span
 
 Operand = tuple[Expression, Typing]
@@ -82,6 +82,8 @@ class Quantities:
 
     def meant(self, unit: str) -> str | None:
         """Return a unit with the words that nothing declares replaced by those that were meant; None if one is open."""
+        if unit in COMPOUNDS:
+            return COMPOUNDS[unit]
         words = {word: self._word(word) for word in _WORD.findall(unit)}
         return None if None in words.values() else _WORD.sub(lambda match: words[match[0]] or "", unit)
 

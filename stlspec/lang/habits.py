@@ -7,13 +7,49 @@ from dataclasses import replace
 
 from stlspec.errors import Diagnostic, Edit
 from stlspec.lang.expected import expected, quoted
-from stlspec.lang.failure import Failure
+from stlspec.lang.failure import TEMPORAL, Failure
 from stlspec.lang.statements import is_word
 from stlspec.lang.tree import span_of
 from stlspec.source import Span
 
 _BEFORE_OPERATOR = frozenset("NAME NUMBER UNIT RPAR TRUE FALSE".split())
 """Terminals that end an operand: a `|` behind one of them closes."""
+_OTHER_BRACKETS = {"LBRACE": "RBRACE", "LT": "GT", "BAR": "BAR"}
+_SIGNS = {
+    "^": "**",
+    "%": "percent",
+    "≥": ">=",
+    "≤": "<=",
+    "≠": "!=",
+    "¬": "not",
+    "∧": "and",
+    "∨": "or",
+    "→": "->",
+    "⇒": "->",
+    "↔": "<->",
+    "⇔": "<->",
+    "□": "always",
+    "◻": "always",
+    "◇": "eventually",
+    "⊤": "true",
+    "⊥": "false",
+    "∀": "always",
+    "∃": "eventually",
+    "∞": "inf",
+    "·": "*",
+    "°": "deg",
+    "µ": "u",
+    "μ": "u",
+    "²": "**2",
+    "³": "**3",
+    "×": "*",
+    "−": "-",
+    "–": "-",
+    "'": '"',
+    "“": '"',
+    "”": '"',
+}
+"""Characters that the language does not have, and what is written for them."""
 
 
 def habit(failure: Failure, way: str, *edits: Edit, at: Span | None = None, wanted: str = "") -> Diagnostic:
@@ -81,6 +117,35 @@ def one_bound(failure: Failure) -> Diagnostic | None:
     edits = (Edit(Span(start, start), "0, "),)
     found = failure.error("S001", found="`]`", expected="a second bound", edits=edits)
     return replace(found, help=f"write `[0, {bound}]`", fixes=(replace(found.fixes[0], title=f"write `[0, {bound}]`"),))
+
+
+def sign_of(failure: Failure, character: str) -> str:
+    """Say what to do about a character that no word and no sign has. Not in the paper: the language."""
+    before = failure.tokens[failure.at - 1] if failure.at else None
+    if before is not None and before.type == "UNIT_WORD":
+        return f'write `"{character}"`: a unit that is no word stands in quotes'
+    glued = before is not None and failure.token is not None and before.end_pos == failure.token.start_pos
+    if character == "'" and glued and before is not None and is_word(before):
+        return f"write `rate({before})` for a derivative; names have no `{character}`"
+    sign = "," if character == ";" and failure.brackets else _SIGNS.get(character)
+    if sign:
+        return f"write `{sign}` in its place"
+    return "remove it" if character.isascii() else "remove it; words and signs of the language are plain ASCII"
+
+
+def other_brackets(failure: Failure) -> Diagnostic | None:
+    """Describe `always{0, 5}`, `always<0, 5>` and `always|0, 5|`. Not in the paper: the language."""
+    at, tokens = failure.at, failure.tokens
+    if failure.token is None or at < 1 or tokens[at - 1].type not in TEMPORAL:
+        return None
+    closing = _OTHER_BRACKETS.get(failure.token.type)
+    ends = next((i for i in range(at + 1, len(tokens)) if tokens[i].type == closing), None)
+    comma = next((i for i in range(at, len(tokens)) if tokens[i].type in ("COMMA", "COLON")), None)
+    if ends is None or comma is None or not at + 1 < comma < ends - 1:
+        return None
+    whole = span_of(tokens[at]).to(span_of(tokens[ends]))
+    window = f"[{failure.text(tokens[at + 1 : comma])}, {failure.text(tokens[comma + 1 : ends])}]"
+    return habit(failure, f"write `{window}`", Edit(whole, window), at=whole, wanted="an interval or a formula")
 
 
 def round_range(failure: Failure) -> Diagnostic | None:

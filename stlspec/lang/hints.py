@@ -15,9 +15,10 @@ from lark import Token
 from stlspec.errors import Diagnostic, Edit, Label
 from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import TEMPORAL, Failure
-from stlspec.lang.habits import bars, dotted, one_bound, round_range
+from stlspec.lang.habits import bars, dotted, one_bound, other_brackets, round_range, sign_of
 from stlspec.lang.headers import blank_in_name, glued_type, no_name, priority
-from stlspec.lang.phrases import PHRASES, for_all
+from stlspec.lang.measures import unit_of_number, unit_of_signal
+from stlspec.lang.phrases import PHRASES, for_all, within
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
 from stlspec.lang.tree import span_of
@@ -38,38 +39,6 @@ _FOREIGN = frozenset({"input", "output", "const", "float", "specification"})
 """Words with which statements of RTAMT begin."""
 _COMPLETE = frozenset("NAME NUMBER STRING UNIT TRUE FALSE INF RPAR RSQB RBRACE COLON".split())
 """Terminals behind which a line may well end."""
-_SIGNS = {
-    "^": "**",
-    "%": "percent",
-    "≥": ">=",
-    "≤": "<=",
-    "≠": "!=",
-    "¬": "not",
-    "∧": "and",
-    "∨": "or",
-    "→": "->",
-    "⇒": "->",
-    "↔": "<->",
-    "⇔": "<->",
-    "□": "always",
-    "◻": "always",
-    "◇": "eventually",
-    "⊤": "true",
-    "⊥": "false",
-    "∀": "always",
-    "∃": "eventually",
-    "∞": "inf",
-    "·": "*",
-    "×": "*",
-    "−": "-",
-    "–": "-",
-    "'": '"',
-    "“": '"',
-    "”": '"',
-}
-"""Characters that the language does not have, and what is written for them."""
-
-
 _PATH = re.compile(r"(?<![^\s{])[A-Za-z0-9_./~-]+\.[A-Za-z]\w*(?![^\s},])")
 """What looks like the path of a file."""
 
@@ -109,25 +78,11 @@ def _unreadable(failure: Failure) -> Diagnostic | None:
         name = dotted(failure)
         if name:
             return failure.error("S005", character="`.`", help=f"a name has no dots: write `{name}`")
-        return failure.error("S005", character=quoted(str(token)), help=_way_out(failure, str(token)))
+        return failure.error("S005", character=quoted(str(token)), help=sign_of(failure, str(token)))
     if token.type == "WALRUS":
         name = str(failure.tokens[failure.at - 1]) if failure.at else "p"
         return failure.error("S012", name=name)
     return None
-
-
-def _way_out(failure: Failure, character: str) -> str:
-    """Say what to do about a character that no word and no sign has."""
-    before = failure.tokens[failure.at - 1] if failure.at else None
-    if before is not None and before.type == "UNIT_WORD":
-        return f'write `"{character}"`: a unit that is no word stands in quotes'
-    glued = before is not None and failure.token is not None and before.end_pos == failure.token.start_pos
-    if character == "'" and glued and before is not None and is_word(before):
-        return f"write `rate({before})` for a derivative; names have no `{character}`"
-    sign = "," if character == ";" and failure.brackets else _SIGNS.get(character)
-    if sign:
-        return f"write `{sign}` in its place"
-    return "remove it" if character.isascii() else "remove it; words and signs of the language are plain ASCII"
 
 
 def _no_statement(failure: Failure) -> Diagnostic | None:
@@ -198,7 +153,8 @@ def _misspelt_clause(failure: Failure) -> Diagnostic | None:
     """A word that is nearly one of the words that fit."""
     token = failure.token
     words = [t.lower().removesuffix("_word") for t in failure.expected if t.isalpha() or t == "UNIT_WORD"]
-    words = [w for w in words if w not in ("name", "number", "string")]
+    # A single letter is no slip of another: `S` would be proposed for `s`.
+    words = [w for w in words if len(w) > 1 and w not in ("name", "number", "string")]
     if token is None or not is_word(token):
         return None
     close = closest(str(token), words, 0.7)
@@ -368,9 +324,12 @@ def _plain(failure: Failure) -> Diagnostic:
 
 _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _bare_path,
+    other_brackets,
     _unreadable,
     priority,
     no_name,
+    unit_of_number,
+    unit_of_signal,
     _late_clause,
     _no_statement,
     _glued_statement,
@@ -378,6 +337,7 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     _cut_line,
     _reserved_name,
     for_all,
+    within,
     _misspelt_operator,
     _misspelt_clause,
     blank_in_name,

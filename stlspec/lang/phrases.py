@@ -17,7 +17,8 @@ from stlspec.source import Span
 
 _BETWEEN = frozenset({"to", "and", "till", "through", "thru", "upto"})
 _QUANTIFIERS = {"forall": "always", "foreach": "always", "exists": "eventually", "exist": "eventually"}
-_WITHIN = frozenset({"within", "during"})
+_WITHIN = frozenset({"within", "during", "for"})
+_LIMITS = frozenset({("at", "least"), ("at", "most"), ("the", "next")})
 _LOGIC = frozenset("AND AMPERSAND AMPERSANDS OR BAR BARS XOR IFF UNTIL U SINCE S UNLESS W RELEASE R".split())
 _BEGINNINGS = frozenset("COLON IMPLIES ARROW FAT_ARROW ASSIGN LPAR".split())
 _COMPARISONS = frozenset({"LT", "LE", "GT", "GE", "EQ", "NE", "ASSIGN"})
@@ -41,7 +42,7 @@ def spoken_bounds(failure: Failure) -> Diagnostic | None:
 
 
 def within(failure: Failure) -> Diagnostic | None:
-    """Describe `p within 5 s` and `eventually within 5 s p`. Not in the paper: the language."""
+    """Describe `p within 5 s`, `p for at least 5 s` and `eventually within 5 s p`. Not in the paper: the language."""
     opening = failure.place(failure.brackets[-1]) if failure.brackets else 0
     for at in (failure.at, failure.at - 1, opening - 1):
         if 0 < at < len(failure.tokens) - 1 and str(failure.tokens[at]) in _WITHIN - failure.names:
@@ -49,13 +50,14 @@ def within(failure: Failure) -> Diagnostic | None:
     else:
         return None
     tokens, word = failure.tokens, str(failure.tokens[at])
-    end = _window_end(failure, at + 1)
+    begin = at + 3 if tuple(map(str, tokens[at + 1 : at + 3])) in _LIMITS else at + 1
+    end = _window_end(failure, begin) if begin < len(tokens) else None
     if end is None:
         return None
-    text = failure.text(tokens[at + 1 : end])
+    text = failure.text(tokens[begin:end])
     window = text if text.startswith("[") else f"[0, {text}]"
     whole = span_of(tokens[at]).to(span_of(tokens[end - 1]))
-    operator = "always" if word == "during" else "eventually"
+    operator = "always" if word in ("during", "for") else "eventually"
     if tokens[at - 1].type in TEMPORAL:
         gap = Span(span_of(tokens[at - 1]).end, whole.end)
         way = f"write `{tokens[at - 1]}{window}`"
@@ -179,5 +181,5 @@ def for_all(failure: Failure) -> Diagnostic | None:
     return habit(failure, way, Edit(whole, "always"), at=whole, wanted="an operator of the language")
 
 
-PHRASES = (spoken_bounds, within, window_behind, quantifier)
+PHRASES = (spoken_bounds, window_behind, quantifier)
 """In the order in which they are asked."""

@@ -67,6 +67,13 @@ SPELLINGS = {
     "metres": "m",
 }
 """What people write for a unit, and the word that the language has for it."""
+COMPOUNDS = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "kmph": "km/h", "mph": "mi/h"}
+"""Words that people write for a unit of several."""
+_WRITTEN = {
+    "^": "**", "²": "**2", "³": "**3", "⁻¹": "**-1", "·": "*", "×": "*", "°C": "degC", "°": "deg", "µ": "u", "μ": "u",
+    "%": "percent",
+}  # fmt: skip
+"""Signs of units that people write, and what the language has for them."""
 _PART = re.compile(r"(?P<sign>[*/])?(?P<word>[A-Za-z_%][A-Za-z_0-9%]*|1)(?:\*\*(?P<power>-?[0-9]{1,3}))?")
 
 Dimension = Mapping[str, int]
@@ -88,10 +95,22 @@ def dimension(unit: str) -> dict[str, int] | None:
             return None
         power = int(part["power"] or 1)
         if part["word"] != "1":
-            word = part["word"]
+            word = "percent" if part["word"] == "%" else part["word"]
             exponents[word] = exponents.get(word, 0) + (-power if part["sign"] == "/" else power)
         at = part.end()
     return {word: power for word, power in exponents.items() if power}
+
+
+def respelt(unit: str) -> str | None:
+    """Return a unit as the language writes it: `m^2` as `m**2`, `N m` as `N*m`; None if it cannot be read.
+
+    Not in the paper: the language.
+    """
+    for sign, written in _WRITTEN.items():
+        unit = unit.replace(sign, written)
+    unit = re.sub(r"\s*(/|\*+)\s*", r"\1", unit.strip().removeprefix("[").removesuffix("]").strip())
+    unit = re.sub(r"\s+", "*", unit)
+    return unit if dimension(unit) is not None else None
 
 
 def spell(exponents: Dimension) -> str:

@@ -13,6 +13,7 @@ from stlspec.source import SourceText
 
 DECLARED = (
     'time 100 ms\nsignal v unit "m/s"\nsignal d unit "m"\nsignal n\nsignal a unit "rad"\nsignal f unit "furlong"\n'
+    'signal soc unit "%"\n'
     "param T = 2 s\nparam k = 3\nparam open\n"
 )
 
@@ -30,6 +31,7 @@ def codes(formula):
     [
         "v > 3",
         "v > 3 m/s",
+        "soc > 3 percent",
         "v > k",
         "v > open",
         "d > v * T",

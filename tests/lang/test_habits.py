@@ -19,6 +19,10 @@ def only(text):
         ("hard a: always (if x > 5 then x < 7)", "S001", "write `p implies q` for: if p then q"),
         ("hard a: eventually[5 s] x > 1", "S001", "write `[0, 5 s]`"),
         ("hard a: always (|x - 1| < 5)", "S001", "write `abs(x - 1)`"),
+        ("hard a: always{0, 5 s} (x > 1)", "S001", "write `[0, 5 s]`"),
+        ("hard a: eventually<0, 5> (x > 1)", "S001", "write `[0, 5]`"),
+        ("hard a: always |0 : 5| (x > 1)", "S001", "write `[0, 5]`"),
+        ("hard a: x > 5 °C", "S005", "write `deg` in its place"),
         ("signal y unit %", "S005", 'write `"%"`: a unit that is no word stands in quotes'),
         ("signal y in (-1, 5)", "S025", "write [-1, 5]"),
         ("signal y in (0, 5]", "S025", "write [0, 5]"),
@@ -30,7 +34,13 @@ def test_habits_of_other_languages_are_told_the_way_here(statement, code, way):
 
 
 @pytest.mark.parametrize(
-    "text", ["signal x in (-1, 5)", "hard a: eventually[5 s] x > 1", "hard a: |x| + |x - 2| < 5 | x > |x - 1|"]
+    "text",
+    [
+        "signal x in (-1, 5)",
+        "hard a: eventually[5 s] x > 1",
+        "hard a: always{0, 5 s} (x > 1)",
+        "hard a: |x| + |x - 2| < 5 | x > |x - 1|",
+    ],
 )
 def test_the_fix_clears_it(text):
     assert parse(SourceText.of("s", only(text).fixes[0].applied(text))).diagnostics == ()

@@ -17,6 +17,10 @@ def only(statement):
     ("statement", "right"),
     [
         ("hard a: p within 5 s", "hard a: eventually[0, 5 s] p"),
+        ("hard a: p for 5 s", "hard a: always[0, 5 s] p"),
+        ("hard a: x > 5 for at least 5 s", "hard a: always[0, 5 s] (x > 5)"),
+        ("hard a: always for 5 s p", "hard a: always[0, 5 s] p"),
+        ("hard a: p within the next 5 s", "hard a: eventually[0, 5 s] p"),
         ("hard a: p implies x > 5 within 5 s", "hard a: p implies eventually[0, 5 s] (x > 5)"),
         ("hard a: always (p -> (x > 5) within [1 s, 5 s])", "hard a: always (p -> eventually[1 s, 5 s] (x > 5))"),
         ("hard a: eventually within 5 s p", "hard a: eventually[0, 5 s] p"),
