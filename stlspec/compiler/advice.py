@@ -4,6 +4,7 @@ In: expressions, their typings, and pieces of the text. Out: the words of a help
 where only the author knows.
 """
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
@@ -26,6 +27,9 @@ FOR_FORMULAS = {
 }
 _FOREIGN = {"infinity": "inf", "infty": "inf", "oo": "inf"}
 """Names of other languages, in small letters, and the word for them here."""
+_MULTIPLIED = re.compile(r"(?P<sign>[-<>=(,*/+]\s*)?(?P<word>\w[\w.]*)(?:\*\*\d)?\s*[*/]\s*$")
+LONGEST_UNIT = 60
+"""Characters before a name that are looked at."""
 _LONGEST_NUMBER = 9
 """Digits of a factor that is worth a suggestion."""
 
@@ -47,6 +51,15 @@ def for_unknown(name: str, span: Span, known: Iterable[str]) -> Advice:
     if name in OPERATOR_WORDS:
         return f"`{name}` is an operator: it needs an operand", ()
     return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`", ()
+
+
+def first_of_unit(before: str) -> str | None:
+    """Return the word that is multiplied with or divided by what stands behind `before`; None if there is none.
+
+    The unit of a number is a word that was read, which gives the empty text: in `3 N*m` only `m` is a name.
+    """
+    found = _MULTIPLIED.search(before)
+    return None if found is None else found["word"] if found["sign"] else ""
 
 
 def for_truth(node: Infix, below: Sequence[Typing], text: Text) -> Advice | None:

@@ -8,13 +8,14 @@ one grammar, so this is where `always d` and `(d > 1) + 2` are told from `always
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from stlspec.compiler.advice import FOR_FORMULAS, for_truth, for_unknown, short
+from stlspec.compiler.advice import FOR_FORMULAS, LONGEST_UNIT, first_of_unit, for_truth, for_unknown, short
 from stlspec.compiler.constants import FOLDABLE, fold
 from stlspec.compiler.intervals import swapped, ticks_of
 from stlspec.compiler.model import BROKEN, FORMULA, Declared, Typing
 from stlspec.compiler.quantities import Quantities, Unit
 from stlspec.errors import Diagnostic, Edit, Label, diagnostic
 from stlspec.lang.hints import PREFIX_WORDS
+from stlspec.lang.measures import LEAVE_OUT
 from stlspec.lang.nodes import (
     Call,
     Expression,
@@ -177,10 +178,12 @@ class Inference:
             return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
         way, edits = for_unknown(name, node.span, [*self.known(), "now", "true", "false", "inf"] if few else ())
-        before = self.source.text[max(0, node.span.start - 3) : node.span.start].rstrip()
-        if is_unit_word(name) and before.endswith(("*", "/")):
-            way = f"if `{name}` is meant as a unit: leave the unit out, and a number takes that of the other side"
-            edits = ()
+        if is_unit_word(name):
+            first = first_of_unit(self.source.text[max(0, node.span.start - LONGEST_UNIT) : node.span.start])
+            if first is not None and first not in self.scope and is_unit_word(first):
+                return BROKEN  # the first word of this unit was told
+            if first is not None:
+                way, edits = f"if `{name}` is meant as a unit: {LEAVE_OUT}", ()
         return self._report("N101", node.span, edits=edits, name=name, help=way)
 
     def _index(self, node: Index) -> Typing:

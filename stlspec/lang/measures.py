@@ -15,7 +15,7 @@ from stlspec.lang.tree import span_of
 from stlspec.lang.units import dimension, is_unit_word, respelt
 from stlspec.source import Span
 
-_LEAVE_OUT = "leave the unit out: a number takes that of the other side"
+LEAVE_OUT = "leave the unit out: a number takes that of the other side"
 
 
 def unit_of_signal(failure: Failure) -> Diagnostic | None:
@@ -52,7 +52,7 @@ def unit_of_number(failure: Failure) -> Diagnostic | None:
         return None
     if "*" in written.replace("**", "") or not written[:1].isalpha():
         gap = Span(span_of(tokens[number]).end, whole.end)
-        return habit(failure, _LEAVE_OUT, Edit(gap, ""), at=whole, wanted="a unit such as `m/s`")
+        return habit(failure, LEAVE_OUT, Edit(gap, ""), at=whole, wanted="a unit such as `m/s`")
     way = f"write `{tokens[number]} {written}`: behind a number a unit stands as it is"
     return habit(failure, way, Edit(whole, written), at=whole, wanted="a unit such as `m/s`")
 

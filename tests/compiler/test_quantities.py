@@ -163,3 +163,20 @@ def test_whole_milliseconds_are_that_many_thousandths_of_a_second_from_either_si
 def test_what_is_too_large_for_another_unit_is_infinite():
     factor = conversion({"h": 1}, {"ns": 1})
     assert [scaled(x, factor) for x in (1e308, -1e308, float("inf"))] == [float("inf"), -float("inf"), float("inf")]
+
+
+@pytest.mark.parametrize(
+    ("formula", "names"),
+    [
+        ("d > 3 N*m", ["m"]),
+        ("d > 3 kg*m/s**2", ["m"]),
+        ("d > 3 / m", ["m"]),
+        ("d < m/s", ["m"]),
+        ("d < m / v / s", ["m", "s"]),
+    ],
+)
+def test_a_unit_that_was_taken_for_names_is_told_once(formula, names):
+    found = checked(f"hard a1: {formula}")[1]
+    assert [(d.code, d.message.split("`")[1]) for d in found] == [("N101", name) for name in names]
+    told = "leave the unit out" in found[0].help
+    assert told == ("3" in formula)
