@@ -207,10 +207,15 @@ def _write_values(axes: Any, values: Any, limit: float) -> None:
 
 
 def _write_zones(axes: Any, zones: Sequence[str], n_columns: int) -> None:
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2.5, foreground="white")]
     for state, letter in enumerate(zones):
         row, column = divmod(state, n_columns)
         if letter:
-            axes.text(column - 0.42, row - 0.34, letter, ha="left", va="center", fontsize=8, color=_MUTED)
+            axes.text(
+                column - 0.42, row - 0.34, letter, ha="left", va="center", fontsize=8, color=_INK, path_effects=halo
+            )
 
 
 def _draw_obstacle(axes: Any, row: int, column: int) -> None:

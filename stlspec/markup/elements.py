@@ -12,6 +12,7 @@ from html import escape
 
 _VOID = frozenset({"meta", "br", "hr", "input", "link", "img"})
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]")
+_LARGEST_WHOLE = 1e7
 _LONGEST_NAME = 120
 
 
@@ -69,12 +70,13 @@ def _attribute(key: str, value: object) -> str:
 
 
 def number(value: float | None) -> str:
-    """Write a number for people: four significant digits, infinities as ∞, – where there is none."""
+    """Write a number for people: four digits, whole ones in full, infinities as ∞, – where there is none."""
     if value is None:
         return "–"
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    return f"{value + 0.0:.4g}"
+    whole = abs(value) < _LARGEST_WHOLE and value == int(value)
+    return f"{int(value)}" if whole else f"{value + 0.0:.4g}"
 
 
 def short(name: str, at_most: int = _LONGEST_NAME) -> str:

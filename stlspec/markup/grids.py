@@ -13,6 +13,7 @@ from stlspec.markup.figures import figure, label
 
 _MOST_SIDE = 80
 _NUMBERED_UP_TO = 12
+_LETTERED_FROM = 14
 _LEVELS = 12
 _LONGEST_PATH = 2000
 _GOALS, _OBSTACLES = "G123456789", "#H"
@@ -49,12 +50,16 @@ def board_svg(board: Board, title: str, size: float = 420.0) -> Markup:
         element("path", d=walls, class_="stl-wall") if walls else None,
         element("path", d=_lines(down, right, side), class_="stl-rule") if side > 8 else None,
         *(_numbers(shown, side, right) if numbers else []),
+        *(_regions(board.rows, side) if block == 1 and side > _LETTERED_FROM else []),
         *_ends(board.rows, block, side),
         *_line(board, block, side),
     ]
     said = [f"{n_rows} rows, {n_columns} columns"]
     if board.values:
         said.append(f"values from {number(min(board.values.values()))} to {number(max(board.values.values()))}")
+    regions = sorted({letter for row in board.rows for letter in row if letter.islower()})
+    if regions:
+        said.append(f"region{'s' if len(regions) > 1 else ''} {', '.join(regions)}")
     if block > 1:
         said.append(f"each square stands for {block} x {block} cells")
     return figure(right * side, down * side, title, "; ".join(said), *(p for p in parts if p is not None))
@@ -123,6 +128,16 @@ def _numbers(shown: Mapping[int, float], side: float, right: int) -> list[Markup
     return [
         label(square % right * side + side - 3, square // right * side + 12, f"{value:.2f}", "stl-cell stl-halo", "end")
         for square, value in sorted(shown.items())
+    ]
+
+
+def _regions(rows: Sequence[str], side: float) -> list[Markup]:
+    """Write the letter of its region into each cell that has one, where no value stands."""
+    return [
+        label(column * side + 3, row * side + side - 4, letter, "stl-region stl-halo")
+        for row, line in enumerate(rows)
+        for column, letter in enumerate(line)
+        if letter.islower()
     ]
 
 

@@ -93,8 +93,8 @@ def _contents(view: RewardView) -> list[Markup]:
         words = (
             f"R(s) of {counted(len(view.values), 'state')}, from {number(min(view.values.values()))} to "
             f"{number(max(view.values.values()))}; all others 0. Plain: positive; hatched: negative; filled squares: "
-            "obstacles; ring: start; stars: goals."
-        )
+            "obstacles; ring: start; stars: goals"
+        ) + ("; letters: regions." if any(letter.islower() for row in world.map for letter in row) else ".")
         return [element("figure", board, element("figcaption", words), class_="map")]
     return [_states(view)]
 

@@ -56,7 +56,17 @@ def test_characters_that_no_page_can_hold_are_replaced() -> None:
 
 @pytest.mark.parametrize(
     ("value", "expected"),
-    [(1.0, "1"), (-0.0, "0"), (0.123456, "0.1235"), (float("inf"), "∞"), (-float("inf"), "-∞"), (None, "–")],
+    [
+        (1.0, "1"),
+        (14200.0, "14200"),
+        (1.5e9, "1.5e+09"),
+        (14200.5, "1.42e+04"),
+        (-0.0, "0"),
+        (0.123456, "0.1235"),
+        (float("inf"), "∞"),
+        (-float("inf"), "-∞"),
+        (None, "–"),
+    ],
 )
 def test_numbers_for_people(value: float | None, expected: str) -> None:
     assert number(value) == expected

@@ -44,6 +44,18 @@ def test_numbered_goals_keep_their_number() -> None:
     assert "2" in [e.text for e in drawn(Board(("S1", ".2"))).iter("text")]
 
 
+def test_regions_are_lettered_and_named_where_a_cell_has_room() -> None:
+    root = drawn(Board(("Sw.", "dwG"), {1: 0.5}))
+    side = float(root.get("width")) / 3
+    letters = [
+        (e.text, int(float(e.get("x")) // side), int(float(e.get("y")) // side)) for e in classes(root, "stl-region")
+    ]
+    assert letters == [("w", 1, 0), ("d", 0, 1), ("w", 1, 1)]
+    assert "regions d, w" in "".join(root.itertext())
+    assert not classes(drawn(Board(("w" * 60,) * 60)), "stl-region")
+    assert "region" not in "".join(drawn(Board(ROWS)).itertext())
+
+
 def test_a_huge_map_is_drawn_in_blocks_that_show_the_extreme() -> None:
     rows = ("." * 1000,) * 999 + ("S" + "#" * 999,)
     svg = board_svg(Board(rows, {500_000 + k: 0.1 for k in range(1000)} | {500_777: -1.0}, tuple(range(1000))), "map")
