@@ -18,20 +18,24 @@ from stlspec.errors import CATALOGUE, UsageError, diagnostic
 
 
 def explain(
-    code: Annotated[str | None, typer.Argument(metavar="CODE", help="such as I401; all codes if left out")] = None,
+    code: Annotated[
+        str | None, typer.Argument(metavar="CODE", help="such as I401, or how several begin: I4; all codes if left out")
+    ] = None,
     output: FormatOption = Format.TEXT,
 ) -> None:
     """Say what a diagnostic code means, with a bad and a good example."""
-    if code is None:
-        rows = [{"code": row.code, "title": row.title, "level": row.level} for row in CATALOGUE.values()]
+    beginning = (code or "").upper()
+    several = [row for row in CATALOGUE.values() if row.code.startswith(beginning)]
+    if several and beginning not in CATALOGUE:
+        rows = [{"code": row.code, "title": row.title, "level": row.level} for row in several]
         if output is Format.JSON:
             print_json({"schema": "stlspec.explain/1", "codes": rows})
         else:
             print("\n".join(f"{row['code']}  {row['level']:<8} {row['title']}" for row in rows))
         return
-    row = CATALOGUE.get(code.upper())
+    row = CATALOGUE.get(beginning)
     if row is None:
-        close = get_close_matches(code.upper(), CATALOGUE, 1, 0.6)
+        close = get_close_matches(beginning, CATALOGUE, 1, 0.6)
         way = f"did you mean `{close[0]}`?" if close else "`stlspec explain` lists all codes"
         raise UsageError([diagnostic("D880", what=f"there is no code `{code}`", help=way)])
     if output is Format.JSON:

@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> None:
     if options.figures:
         check_matplotlib()
     out, budget = Path(options.out), QUICK if options.quick else FULL
-    prepare(out)
+    prepare(out, figures=options.figures)
     began = time.perf_counter()
     for experiment in wanted:
         measure(experiment, budget, out, jobs=options.jobs, fresh=options.fresh)
@@ -70,12 +70,12 @@ def check_matplotlib() -> None:
         raise UsageError([diagnostic("D880", what="the figures need matplotlib, which is not installed", help=way)])
 
 
-def prepare(out: Path) -> None:
-    """Make the folders.
+def prepare(out: Path, *, figures: bool) -> None:
+    """Make the folders: for results, and for figures if there will be any.
 
     Raises: InputError S092: they cannot be made.
     """
-    for folder in (out / "results", out / "figures"):
+    for folder in [out / "results", *([out / "figures"] if figures else [])]:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:

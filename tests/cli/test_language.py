@@ -48,6 +48,8 @@ def test_explain_shows_both_examples_and_lists_all_codes(capsys: pytest.CaptureF
     assert "always[2, 5]" in out
     assert run(["explain"]) == 0
     assert len(capsys.readouterr().out.splitlines()) == len(CATALOGUE)
+    assert run(["explain", "u3"]) == 0
+    assert [line[:4] for line in capsys.readouterr().out.splitlines()] == [c for c in CATALOGUE if c.startswith("U3")]
 
 
 def test_explain_suggests_the_nearest_code(capsys: pytest.CaptureFixture[str]) -> None:

@@ -83,7 +83,7 @@ def test_what_lacked_its_libraries_is_measured_again(tmp_path, counted, monkeypa
 
     monkeypatch.setitem(command.EXPERIMENTS, "one", Experiment("one", "skips once", skips))
     experiment = command.EXPERIMENTS["one"]
-    command.prepare(tmp_path)
+    command.prepare(tmp_path, figures=False)
     for _ in range(3):
         command.measure(experiment, command.QUICK, tmp_path, jobs=1, fresh=False)
     assert counted["one"] == 2
@@ -91,7 +91,7 @@ def test_what_lacked_its_libraries_is_measured_again(tmp_path, counted, monkeypa
 
 @pytest.mark.parametrize("result", [{}, {"rows": 3}, {"rows": {"grid-5": {"shaped": [{"seed": 0}]}}}, {"rows": [[]]}])
 def test_a_damaged_result_is_named_with_the_way_out(tmp_path, made, result, capsys):
-    command.prepare(tmp_path)
+    command.prepare(tmp_path, figures=False)
     journal.save(tmp_path, made.record("grids", result))
     with pytest.raises(UsageError) as caught:
         command.kept(tmp_path, made.tiny)
@@ -103,13 +103,13 @@ def test_a_damaged_result_is_named_with_the_way_out(tmp_path, made, result, caps
 
 def test_a_result_that_cannot_be_drawn_is_damaged(tmp_path, made):
     pytest.importorskip("matplotlib")
-    command.prepare(tmp_path)
+    command.prepare(tmp_path, figures=False)
     with pytest.raises(UsageError, match="damaged"):
         command.draw({"table-1-grid-5": made.record("table-1-grid-5", {"truth": 3})}, tmp_path)
 
 
 def test_an_account_of_libraries_of_another_kind_is_no_traceback(tmp_path, counted, made):
-    command.prepare(tmp_path)
+    command.prepare(tmp_path, figures=False)
     journal.save(tmp_path, made.record("one", {"irl": 3}))
     command.measure(command.EXPERIMENTS["one"], command.QUICK, tmp_path, jobs=1, fresh=False)
     assert counted["one"] == 0
@@ -131,10 +131,17 @@ def test_missing_matplotlib_is_refused_before_any_work_or_left_out(tmp_path, cou
     assert counted == {"one": 1, "two": 1}
 
 
+def test_a_folder_for_figures_is_made_only_where_there_will_be_some(tmp_path):
+    command.prepare(tmp_path / "without", figures=False)
+    command.prepare(tmp_path / "with", figures=True)
+    assert [path.name for path in (tmp_path / "without").iterdir()] == ["results"]
+    assert sorted(path.name for path in (tmp_path / "with").iterdir()) == ["figures", "results"]
+
+
 def test_a_folder_that_cannot_be_made_is_a_diagnostic(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError) as caught:
-        command.prepare(tmp_path / "file")
+        command.prepare(tmp_path / "file", figures=True)
     assert caught.value.diagnostics[0].code == "S092"
 
 
