@@ -66,7 +66,15 @@ def learn(
     method: Annotated[Method, typer.Option("--method", help="how to train")] = Method.SHAPED,
     episodes: Annotated[int | None, typer.Option("--episodes", help="default: by the size of the map")] = None,
     seed: Annotated[int, typer.Option("--seed", help="same seed, same result")] = 0,
-    max_steps: Annotated[int | None, typer.Option("--max-steps", help="step limit of an episode")] = None,
+    max_steps: Annotated[
+        int | None,
+        typer.Option(
+            "--max-steps",
+            help="most steps of an episode, which goes from one goal to the next where there are several; default: the "
+            "limit of the environment, else 4 for each state (of bins up to 1000), twice the longest demonstration, or "
+            "as far as the spec looks, whichever is most",
+        ),
+    ] = None,
     gamma: Annotated[float, typer.Option("--gamma", help="discount")] = 0.99,
     alpha: Annotated[float, typer.Option("--alpha", help="learning rate")] = 0.1,
     epsilon: Annotated[float, typer.Option("--epsilon", help="share of random actions")] = 0.4,

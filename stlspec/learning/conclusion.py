@@ -8,12 +8,15 @@ from types import MappingProxyType
 from typing import Any
 
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.printing import counted
 from stlspec.envs.model import Environment
 from stlspec.learning.evidence import Evidence, notes
 from stlspec.learning.farming import Farming, describe, find_farming
 from stlspec.learning.outcome import Log, Outcome, Training, meets
 from stlspec.learning.policy import Policy, greedy_action
 from stlspec.learning.route import Route, Stage
+from stlspec.learning.settings import Settings
+from stlspec.learning.shaping import GOAL, LIMIT
 from stlspec.learning.task import SETTLED, World
 from stlspec.learning.tours import CHAIN, Judge, Search, Tour, looks
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
@@ -65,6 +68,7 @@ def conclude(
         remarks = (*remarks, "the start itself violates a hard requirement, so no policy can meet it")
     if settings.method == "paper":
         remarks = (*remarks, describe(farming, policy.states))
+    log = _log(search)
     return Outcome(
         settings=settings,
         success=success,
@@ -77,12 +81,30 @@ def conclude(
         training=_training(search, first_lasting_success(checks) if checks else (0, 0) if success else None),
         policy=policy,
         reward=evidence.reward,
-        log=_log(search),
+        log=log,
         checks=checks,
         farming=farming,
         warnings=() if settings.method == "plain" else evidence.warnings,
-        notes=remarks,
+        notes=remarks if success else (*short_of_steps(log, settings), *remarks),
     )
+
+
+def short_of_steps(log: Log, settings: Settings) -> tuple[str, ...]:
+    """Say where no episode got to its goal and the step limit ended some: then the limit may be what is wrong.
+
+    Not in the paper: it has no step limits. Returns: one line for the whole run, or none.
+    """
+    numbers, limit = log.segments or (1,) * len(log.endings), settings.max_steps
+    reached = {number for number, ending in zip(numbers, log.endings, strict=True) if ending == GOAL}
+    missed = [row for row in zip(numbers, log.steps, log.endings, strict=True) if row[0] not in reached]
+    cut = [number for number, steps, ending in missed if ending == LIMIT and steps >= limit]
+    if not cut:
+        return ()
+    segments, of = len(set(cut)), len(set(numbers))
+    goal = "the goal" if of == 1 else f"the goal of {counted(segments, 'segment')} out of {of}"
+    ended = "all of them" if len(cut) == len(missed) else f"{len(cut):,} of {len(missed):,}"
+    way = f"if the way is longer, `--max-steps {10 * limit}` leaves time for it"
+    return (f"no episode of training reached {goal}: {ended} ended at the step limit of {limit:,}; {way}",)
 
 
 def stops(world: World, tour: Tour) -> tuple[int, ...]:

@@ -18,6 +18,7 @@ from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
 from stlspec.errors import UsageError, diagnostic
 from stlspec.learning import chance, storage
+from stlspec.learning.conclusion import short_of_steps
 from stlspec.learning.evidence import Evidence, gathered
 from stlspec.learning.goals import Condition, find_agenda
 from stlspec.learning.lessons import lessons_of
@@ -209,6 +210,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
     satisfaction = scene.runner.satisfaction(actions, settings)
     shown = scene.runner.run(actions, settings, 0)
     n_states, endings = scene.problem.n_states, scene.problem.endings
+    log = Log(tuple(sampler.steps), tuple(sampler.returns), tuple(sampler.outcomes))
     named: list[Any] = [environment.decode(state) for state in range(n_states)]
     policy = Policy(
         MappingProxyType(environment.describe()),
@@ -232,11 +234,12 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         ),
         policy=policy,
         reward=scene.evidence.reward,
-        log=Log(tuple(sampler.steps), tuple(sampler.returns), tuple(sampler.outcomes)),
+        log=log,
         checks=(),
         lessons=lessons_of(scene.evidence, environment),
         warnings=() if settings.method == "plain" else scene.evidence.warnings,
-        notes=() if environment.deterministic else _remarks(satisfaction, environment),
+        notes=short_of_steps(log, settings)
+        + (() if environment.deterministic else _remarks(satisfaction, environment)),
         satisfaction=None if environment.deterministic else satisfaction,
         observations=shown.observations,
     )

@@ -26,7 +26,7 @@ from stlspec.learning.outcome import Outcome
 from stlspec.learning.promises import AT_HOME, ELSEWHERE, promised
 from stlspec.learning.results import marks, publish
 from stlspec.learning.segments import Trainer, trainer
-from stlspec.learning.settings import make_settings
+from stlspec.learning.settings import make_settings, needed_steps
 from stlspec.learning.tables import signal_sources
 from stlspec.learning.task import SETTLED, World, make_world, segment
 from stlspec.learning.tours import Judgement, Search, Tour, best_tour, find_tours, judgement
@@ -66,21 +66,23 @@ def learn(
     Paper: Algorithms 1 to 3.
 
     Args:    bundle: the compiled spec. environment: where to learn. demonstrations: good or bad; reward: a
-             map inferred before, instead. method: "shaped", "plain" or "paper". episodes, max_steps: None =
-             by the environment. seed: same seed, same result. gamma, alpha, epsilon: of Q-learning.
-             step_cost: per step. mask: never repeat what violated; None = where transitions are known to be
-             deterministic. base: "spec", or "env" = the environment's own reward. bins: into how many to cut each
-             entry of an observation, where states have no numbers. jobs: processes, for segments that can be
-             trained at the same time; the result does not depend on it. demo_environment: where demonstrations
-             were made that do not say so. out: directory for the results; an interrupted run resumes.
-             progress: called between chunks of episodes.
+             map inferred before, instead. method: "shaped", "plain" or "paper". episodes, max_steps: None = see
+             `default_episodes`, `default_max_steps`; with several goals max_steps bounds the way to each.
+             seed: same seed, same result. gamma, alpha, epsilon: of Q-learning. step_cost: per step. mask: never
+             repeat what violated; None = where transitions are known to be deterministic. base: "spec", or
+             "env" = the environment's own reward. bins: into how many to cut each entry of an observation,
+             where states have no numbers. jobs: processes, for segments that can be trained at the same time;
+             the result does not depend on it. demo_environment: where demonstrations were made that do not say
+             so. out: directory for the results; an interrupted run resumes. progress: called between chunks of
+             episodes.
     Returns: the outcome; `success` says whether the greedy path meets every requirement.
     Raises:  UsageError: D866 to D872, D876, D878, D879; DataError: a demonstration or the reward cannot be used.
     """
-    environment = with_rewards(with_numbers(environment, bins), base)
+    environment, demonstrations = with_rewards(with_numbers(environment, bins), base), tuple(demonstrations)
     settings = make_settings(
         environment, method=method, episodes=episodes, seed=seed, max_steps=max_steps, gamma=gamma,
         alpha=alpha, epsilon=epsilon, step_cost=step_cost, mask=mask, base=base,
+        needed=needed_steps(bundle, demonstrations),
     )  # fmt: skip
     if environment.bins is not None or environment.outcomes is not None:
         home = with_numbers(demo_environment, bins) if demo_environment is not None else environment

@@ -3,8 +3,12 @@
 import pytest
 
 from stlspec import api
+from stlspec.envs.model import Environment
 from stlspec.learning import learn
-from stlspec.learning.conclusion import first_lasting_success
+from stlspec.learning.conclusion import first_lasting_success, short_of_steps
+from stlspec.learning.outcome import Log
+from stlspec.learning.settings import make_settings
+from stlspec.learning.shaping import GOAL, LIMIT, VIOLATION
 
 
 @pytest.mark.parametrize(
@@ -19,6 +23,26 @@ from stlspec.learning.conclusion import first_lasting_success
 )
 def test_success_counts_from_the_first_check_after_the_last_failure(checks, expected):
     assert first_lasting_success(checks) == expected
+
+
+@pytest.mark.parametrize(
+    ("steps", "endings", "segments", "said"),
+    [
+        ((4, 4), (LIMIT, LIMIT), (), "reached the goal: all of them ended at the step limit of 4"),
+        ((4, 2), (LIMIT, VIOLATION), (), "reached the goal: 1 of 2 ended at the step limit of 4"),
+        ((4, 2), (LIMIT, GOAL), (), ""),
+        ((3, 2), (LIMIT, VIOLATION), (), ""),  # cut by the environment itself
+        ((4, 2, 4), (LIMIT, GOAL, LIMIT), (1, 1, 2), "the goal of 1 segment out of 2: all of them ended"),
+    ],
+)
+def test_where_only_the_step_limit_ended_episodes_it_is_named_with_the_way_out(steps, endings, segments, said):
+    settings = make_settings(
+        Environment("x"), method="shaped", episodes=1, seed=0, max_steps=4, gamma=0.99, alpha=0.1, epsilon=0.4,
+        step_cost=0.01, mask=True,
+    )  # fmt: skip
+    found = short_of_steps(Log(steps, (0.0,) * len(steps), endings, segments), settings)
+    assert len(found) == bool(said)
+    assert all(said in line and "`--max-steps 40`" in line for line in found)
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from stlspec import api
+from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
 from stlspec.errors import UsageError
 from stlspec.learning import learn, load_policy
@@ -168,3 +169,22 @@ def test_a_certain_table_with_its_own_reward_has_verdicts(kit):
     assert outcome.to_json()["requirements"]["fast"]["verdict"] == "satisfied"
     with pytest.raises(UsageError, match="no reward of its own"):
         learn(kit.grid_bundle(4), kit.grid_world(("S.G",)), method="plain", base="env")
+
+
+CLIFF = """
+signal s from "obs[0]"
+hard cliff: always (s <= 36 or s >= 47)
+soft reach depends on cliff: eventually (s > 46)
+"""
+
+
+def test_an_environment_without_a_step_limit_gets_one_that_leaves_time_for_the_way():
+    """CliffWalking has 48 states, no limit of its own, and a way of 13 steps."""
+    cells = [36, *range(24, 36), 47]
+    shown = make_demonstration("edge", states=[[cell] for cell in cells], actions=[0, *[1] * 11, 2])
+    outcome = learn(api.compile(CLIFF), make_environment("CliffWalking-v1"), [shown], episodes=600)
+    assert outcome.settings.max_steps == 192
+    assert outcome.success
+    assert not any("step limit" in note and "no episode" in note for note in outcome.notes)
+    short = learn(api.compile(CLIFF), make_environment("CliffWalking-v1"), [shown], episodes=50, max_steps=4)
+    assert "no episode of training reached the goal: all of them ended at the step limit of 4" in short.notes[0]
