@@ -25,6 +25,7 @@ from stlspec.semantics.ending import evaluate_ending
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
 from stlspec.semantics.explain import Explanation, explain, named_values
 from stlspec.semantics.gradients import gradient
+from stlspec.semantics.layout import own_time
 from stlspec.semantics.online import Monitor, make_monitor
 from stlspec.semantics.online.monitor import Reading, Table
 from stlspec.semantics.online.plan import Ends
@@ -67,17 +68,20 @@ class Bundle(BundleData):
 
         Paper: Definition 5, quantitative semantics; the verdict is the Boolean semantics.
 
-        Args:    signals: by name; each (n_samples,), or (n_traces, n_samples), or a list of arrays.
-                 time: stamps of the same shape, in the spec's unit; None where samples are counted or periodic.
+        Args:    signals: by name; each (n_samples,), or (n_traces, n_samples), or a list of arrays. The key `time`
+                 means the stamps, as in files, unless the spec declares a signal of that name.
+                 time: stamps of the same shape, in the spec's unit, where `signals` has none; None where samples
+                 are counted or periodic.
                  end: "clip" (a trace is a complete episode), "strict" (it must reach the horizon) or "interval"
                  (it may go on: one trace, with `low` and `high`, and a verdict that may be undecided).
                  at: the sample whose value is wanted; negative counts from the end.
                  algebra: of `robustness` and `signal`; verdicts and witnesses are those of min/max in any.
         Returns: for each requirement robustness, verdict, witness, and its value at every sample.
         Raises:  DataError: a signal is missing, NaN, of another length, ...
-                 UsageError: `end`, `at` or `algebra` is wrong.
+                 UsageError: `end`, `at` or `algebra` is wrong, or there are stamps in both places.
         """
-        return evaluate_ending(self, signals, time, end=end, at=at, algebra=algebra)
+        stamps = self._stamps(signals, time)
+        return evaluate_ending(self, signals, stamps, end=end, at=at, algebra=algebra)
 
     def gradient(
         self,
@@ -93,7 +97,7 @@ class Bundle(BundleData):
         Returns: arrays by name of the signal, of the shape of its samples.
         Raises:  DataError: as `evaluate`. UsageError: no such requirement, or an algebra without slopes.
         """
-        return gradient(self, signals, time, requirement, algebra)
+        return gradient(self, signals, self._stamps(signals, time), requirement, algebra)
 
     def monitor(self, reading: Reading = "start", ends: Ends = "any", states: Table | None = None) -> Monitor:
         """Make a monitor: samples go in one by one, what is known of each requirement comes out.
@@ -115,7 +119,10 @@ class Bundle(BundleData):
 
     def named_values(self, signals: Mapping[str, Any], time: Any = None) -> Mapping[str, NDArray[np.float64]]:
         """Return the value of every `let` that a requirement uses, at every sample of one trace or batch."""
-        return named_values(self, signals, time)
+        return named_values(self, signals, self._stamps(signals, time))
+
+    def _stamps(self, signals: Mapping[str, Any], time: Any) -> Any:
+        return own_time({signal.name for signal in self.signals}, signals, time)
 
     def to_networkx(self) -> "nx.DiGraph":
         """Return the DAG of requirements, edges from prerequisite to dependant, weights on the nodes."""

@@ -110,3 +110,45 @@ def test_a_text_uses_files_only_of_a_folder_that_it_is_given(tmp_path: Path) -> 
     assert pickle.loads(pickle.dumps(bundle)) == bundle
     (tmp_path / "spec.stl").write_text(text)
     assert stlspec.compile(tmp_path / "spec.stl").meaning_sha256 == bundle.meaning_sha256
+
+
+TIMED = "time 100 ms\nsignal x\nhard a: eventually[0, 300 ms] (x > 5)"
+LATE = {"x": [0, 0, 6, 0], "time": [0, 100, 900, 1000]}
+
+
+def test_the_key_time_of_the_data_means_the_stamps_as_in_files(tmp_path: Path) -> None:
+    bundle = stlspec.compile(TIMED)
+    file = tmp_path / "late.csv"
+    file.write_text("time,x\n" + "".join(f"{t},{x}\n" for t, x in zip(LATE["time"], LATE["x"], strict=True)))
+    ranking = stlspec.score(bundle, stlspec.load_demonstrations([file]))
+    assert ranking.demonstrations[0].label == "bad"
+    assert bundle.evaluate(LATE)["a"].verdict is stlspec.Verdict.VIOLATED
+    assert bundle.evaluate({"x": LATE["x"]})["a"].verdict is stlspec.Verdict.SATISFIED
+    assert bundle.evaluate(LATE, end="interval")["a"].verdict is stlspec.Verdict.VIOLATED
+    assert bundle.gradient(LATE)["x"].tolist() == bundle.gradient({"x": LATE["x"]}, LATE["time"])["x"].tolist()
+    assert bundle.gradient(LATE)["x"].tolist() != bundle.gradient({"x": LATE["x"]})["x"].tolist()
+
+
+def test_stamps_of_a_batch_are_common_or_one_row_each() -> None:
+    bundle, x = stlspec.compile(TIMED), [LATE["x"], LATE["x"]]
+    assert bundle.evaluate({"x": x, "time": LATE["time"]})["a"].satisfied.tolist() == [False, False]
+    rows = [LATE["time"], [0, 100, 200, 300]]
+    assert bundle.evaluate({"x": x, "time": rows})["a"].satisfied.tolist() == [False, True]
+    ragged = {"x": [LATE["x"], [0, 6]], "time": [LATE["time"], [0, 100]]}
+    assert bundle.evaluate(ragged)["a"].satisfied.tolist() == [False, True]
+
+
+def test_a_spec_with_stamps_finds_them_in_the_data() -> None:
+    bundle = stlspec.compile("time s\nsignal x\nlet p = x > 5\nhard a: eventually[0, 3 s] p")
+    assert bundle.evaluate({"x": [0, 6], "time": [0, 9]})["a"].verdict is stlspec.Verdict.VIOLATED
+    assert bundle.named_values({"x": [0, 6], "time": [0, 9]})["p"].tolist() == [-5.0, 1.0]
+    with pytest.raises(stlspec.DataError, match="D810"):
+        bundle.evaluate({"x": [0, 6]})
+    with pytest.raises(stlspec.UsageError, match="given twice"):
+        bundle.evaluate({"x": [0, 6], "time": [0, 9]}, time=[0, 9])
+
+
+def test_a_signal_that_is_called_time_keeps_its_key() -> None:
+    bundle = stlspec.compile("signal time\nhard a: always (time > 0)")
+    assert bundle.evaluate({"time": [3, 2]})["a"].robustness == 2.0
+    assert bundle.monitor().update({"time": 3})["a"].current == 3.0

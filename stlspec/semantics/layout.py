@@ -5,7 +5,7 @@ traces with common times, each of which is evaluated as one batch. Nothing is ch
 checks.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from stlspec.columns import unmasked
 from stlspec.compiler.printing import counted
-from stlspec.errors import DataError, diagnostic
+from stlspec.errors import DataError, UsageError, diagnostic
 from stlspec.traces import whole_stamps
 
 
@@ -33,6 +33,24 @@ class Layout:
 
     groups: tuple[Group, ...]
     ragged: bool = False
+
+
+def own_time(names: Collection[str], signals: Mapping[str, Any], time: Any = None) -> Any:
+    """Return the stamps of a call: those under the key 'time' of its data, as in files, else those of their own.
+
+    Not in the paper: it serves the interface.
+
+    Args:   names: the declared signals; a signal that is called 'time' keeps its key.
+            signals: the data of a trace or a batch, or one sample. time: the stamps that were given apart.
+    Raises: UsageError D880: there are stamps in both places.
+    """
+    if "time" in names or not isinstance(signals, Mapping):
+        return time
+    stamps = signals.get("time")
+    if stamps is not None and time is not None:
+        what = "the time stamps are given twice: as `time=` and under the key 'time'"
+        raise UsageError([diagnostic("D880", what=what, help="leave out one of the two")])
+    return time if stamps is None else stamps
 
 
 def arrange(names: Sequence[str], signals: Mapping[str, Any], time: Any = None, file: str | None = None) -> Layout:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stlspec.errors import DataError
-from stlspec.semantics.layout import arrange
+from stlspec.errors import DataError, UsageError
+from stlspec.semantics.layout import arrange, own_time
 
 
 def groups(signals, time=None, names=("x", "y")):
@@ -66,3 +66,24 @@ def test_the_trace_of_unequal_length_is_named():
 def test_traces_whose_whole_stamps_differ_by_a_nanosecond_do_not_share_them():
     stamps = [[10**18, 10**18 + 1], [10**18, 10**18 + 2]]
     assert groups({"x": [[1, 2], [3, 4]]}, stamps) == [(0,), (1,)]
+
+
+@pytest.mark.parametrize(
+    ("names", "signals", "time", "stamps"),
+    [
+        ({"x"}, {"x": [1, 2], "time": [0, 5]}, None, [0, 5]),
+        ({"x"}, {"x": [1, 2], "time": None}, [0, 5], [0, 5]),
+        ({"x"}, {"x": [1, 2]}, [0, 5], [0, 5]),
+        ({"x", "time"}, {"x": [1, 2], "time": [0, 5]}, None, None),
+        ({"x", "time"}, {"x": [1, 2], "time": [0, 5]}, [3, 4], [3, 4]),
+        ({"x"}, 7, None, None),
+    ],
+)
+def test_the_key_time_means_the_stamps_unless_a_signal_has_the_name(names, signals, time, stamps):
+    assert own_time(names, signals, time) == stamps
+
+
+def test_stamps_in_two_places_are_refused():
+    with pytest.raises(UsageError, match="given twice") as caught:
+        own_time({"x"}, {"x": [1, 2], "time": [0, 5]}, [0, 5])
+    assert caught.value.diagnostics[0].code == "D880"

@@ -141,13 +141,8 @@ class Front:
         """Write what reads and checks a sample, and all expressions: everything that can be refused."""
         lines = self.lines
         lines.add("n = clock.n")
+        self._read_time()
         self._read()
-        if self.plan.counted:
-            lines.add("T = n")
-            lines.add("if time is not None or clock.stamp is not None:")
-            lines.add("    clock.read(time)")
-        else:
-            lines.add("T = clock.read(time)")
         lines.add("memory = store.values")
         for index, node in enumerate(self.plan.nodes):
             if node.op in REAL and index not in self._named and self._computed(index):
@@ -158,6 +153,15 @@ class Front:
             lines.add("    clock.n = n; clock.take(T, time)")
         for line in self._kept:
             lines.add(line)
+
+    def _read_time(self) -> None:
+        """Write what takes the time of a sample, where samples may have one; else they are counted."""
+        lines, base, declared = self.lines, self.plan.base, frozenset(self._signals)
+        lines.add(f"T = n * {lines.bind(base.period or 1)}" if base.period else "T = n")
+        lines.add("if time is not None or clock.stamped:")
+        lines.add("    if time is None or not n:")
+        lines.add(f"        time = clock.stamp_of(sample, time, {lines.bind(declared)})")
+        lines.add("    clock.read(time)" if self.plan.counted else "    T = clock.read(time)")
 
     def _read(self) -> None:
         """Write what takes the values of signals out of a sample."""

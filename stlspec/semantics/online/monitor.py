@@ -61,13 +61,16 @@ _UPDATE = """Take the next sample.
 Not in the paper: it evaluates complete traces only. The step of Algorithm 2 that looks at a partial trace takes
 `current`.
 
-Args:    sample: a value for each signal that a requirement uses; others are ignored. The number of a state if the
-         monitor was made for `states`.
-         time: its time stamp in the spec's unit; None where samples are counted or periodic.
+Args:    sample: a value for each signal that a requirement uses, and its time stamp under the key `time`, as in
+         files, unless the spec declares a signal of that name; others are ignored. Whether stamps stand there, the
+         first sample decides. The number of a state if the monitor was made for `states`.
+         time: its time stamp in the spec's unit, where the sample has none; None where samples are counted or
+         periodic.
 Returns: with the reading `start` a mapping from requirements to `Standing`: what is known of their values at
          sample 0. With `every` a list of `Known`: the values that this sample made known, for each requirement in
          order of the samples.
-Raises:  DataError: the sample cannot be used; the monitor is as it was before.
+Raises:  DataError: the sample cannot be used; the monitor is as it was before. UsageError: it has stamps in both
+         places.
 """
 
 

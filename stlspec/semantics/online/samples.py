@@ -15,6 +15,7 @@ from stlspec.columns import snapped
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
+from stlspec.semantics.layout import own_time
 from stlspec.semantics.online.saving import LARGEST, Remembering, State, Unsound, number, numbers, optional, whole
 
 _LONGEST_TICKS = 2.0**62
@@ -36,10 +37,11 @@ class Clock(Remembering):
 
     n: number of samples. ticks: time of the newest one since the first. first, stamp: time stamps of the first
     and the newest one as given; None without time stamps. last: low, high and current value of one requirement
-    after the other, with the reading `start`; told: what was made of them.
+    after the other, with the reading `start`; told: what was made of them. stamped: whether the next sample may
+    have a time stamp, which is asked until a second one has none; it is found anew after loading.
     """
 
-    __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "ticks", "told")
+    __slots__ = ("_base", "_gapless", "first", "last", "n", "stamp", "stamped", "ticks", "told")
     STATE: ClassVar[State] = {
         "n": whole,
         "ticks": whole,
@@ -53,9 +55,16 @@ class Clock(Remembering):
         self.n, self.ticks = 0, -1
         self.first: float | None = None
         self.stamp: float | None = None
+        self.stamped = True
         # A list once it is loaded, and so unlike any tuple: `told` is not saved.
         self.last: Sequence[float] = ()
         self.told: tuple[Any, ...] = ()
+
+    def stamp_of(self, sample: Any, time: Any, declared: frozenset[str]) -> Any:
+        """Return the time stamp of the next sample, its own under the key 'time' or `time`; None if it has none."""
+        stamp = own_time(declared, sample, time)
+        self.stamped = stamp is not None or self.n == 0 or self.stamp is not None
+        return stamp
 
     def read(self, time: Any) -> int:
         """Return the ticks of the next sample. Raises: DataError: there cannot be one at `time`."""

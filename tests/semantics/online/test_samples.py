@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stlspec import api
-from stlspec.errors import DataError
+from stlspec.errors import DataError, UsageError
 from stlspec.semantics.online import Monitor, make_monitor
 from stlspec.semantics.online.samples import Clock, as_boolean, as_real, missing
 from tests.semantics.online.cases import PERIOD, STAMPS, STEP
@@ -91,3 +91,36 @@ def test_a_bound_as_32_bits_have_it_is_the_bound_online_and_offline():
     for refused in (np.nextafter(np.float32(-1.2), np.float32(-2)), -1.3):
         with pytest.raises(DataError, match="D807"):
             bundle.monitor().update({"p": refused})
+
+
+@pytest.mark.parametrize("base", ["step", "100 ms", "ms"])
+@pytest.mark.parametrize("reading", ["start", "every"])
+def test_a_sample_holds_its_stamp_under_the_key_time_as_in_files(base, reading):
+    bundle = api.compile(f"time {base}\nsignal x\nhard a: eventually[0, {3 if base == 'step' else '300 ms'}] (x > 5)")
+    apart, within = make_monitor(bundle, reading), make_monitor(bundle, reading)
+    for x, t in zip([0, 0, 6, 0], [0, 100, 900, 1000], strict=True):
+        assert within.update({"x": x, "time": t}) == apart.update({"x": x}, time=t)
+        assert within.time == apart.time
+        within = within.copy()
+    assert within.finish() == apart.finish()
+
+
+@pytest.mark.parametrize("base", ["step", "100 ms", "ms"])
+def test_a_stamp_that_is_missing_or_given_twice_is_refused(base):
+    monitor = make_monitor(api.compile(f"time {base}\nsignal x\nhard a: always (x > 5)"))
+    with pytest.raises(UsageError, match="given twice"):
+        monitor.update({"x": 1, "time": 0}, time=0)
+    monitor.update({"x": 1, "time": 0})
+    with pytest.raises(DataError, match="D810" if base == "ms" else "D891"):
+        monitor.update({"x": 1})
+    with pytest.raises(DataError, match="D802"):
+        monitor.update({"x": 1, "time": 0})
+    assert monitor.n_samples == 1
+
+
+@pytest.mark.parametrize("base", ["step", "100 ms"])
+def test_a_stamp_after_a_sample_without_one_is_refused(base):
+    monitor = make_monitor(api.compile(f"time {base}\nsignal x\nhard a: always (x > 5)"))
+    monitor.update({"x": 1})
+    with pytest.raises(DataError, match="D891"):
+        monitor.update({"x": 1, "time": 100})
