@@ -5,7 +5,8 @@ requirements are watched at every step, and a reward map shapes the reward witho
 Robustness and verdicts come from the spec's own online monitor, so they are exact whatever the formula.
 """
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -19,6 +20,8 @@ from gymnasium.wrappers import Autoreset
 
 from stlspec import api
 from stlspec.compiler.bundle import BundleData
+from stlspec.compiler.bundle_file import meaning_sha256
+from stlspec.compiler.dependencies import ancestors
 from stlspec.documents import DamageError
 from stlspec.envs.bins import read_bins
 from stlspec.envs.catalogue import environment_of, make_environment
@@ -26,6 +29,7 @@ from stlspec.envs.gridworld import GridWorld
 from stlspec.envs.live import Reader, readers_of, sample_of
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, StlspecError, UsageError, diagnostic
+from stlspec.errors.model import render
 from stlspec.rewards import RewardMap, load_reward, read_reward
 from stlspec.semantics.evaluation import Verdict
 from stlspec.semantics.online.monitor import make_monitor
@@ -35,6 +39,9 @@ PENALTY = 1.0
 
 STEP_COST = 0.01
 """What a step costs with the base reward of the spec."""
+
+ELSEWHERE = 0.05
+"""How much of a reward map from another environment or map counts: the learner's promises differ as little there."""
 
 Base = Literal["env", "spec"]
 OnViolation = Literal["terminate", "penalise", "ignore"]
@@ -47,11 +54,16 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     Paper: section 3.2: the robustness of the partial run, and the reward of the demonstrations, as potential.
 
     Every step pays base + gamma * Phi(s') - Phi(s), less 1 for a violation of a hard requirement. base "env": the
-    environment's own reward. base "spec": -1/100, and where a soft requirement becomes certain to hold its share
-    of 1 by weight; the episode ends when no soft requirement is open any more. Phi is the reward map, 0 without
-    one and 0 where an episode terminates; a truncated episode goes on in principle, so it keeps its Phi.
+    environment's own reward. base "spec": -1/100, and the share of 1 by weight of each soft requirement that has
+    become certain to hold, as soon as all that it depends on holds so far or is violated for good; the episode
+    ends when no soft requirement is open any more, and no hard one that does not hold so far, such as an
+    `eventually` that is still to be met. Phi is the reward map, 0 without one and 0 where an episode terminates;
+    a truncated episode goes on in principle, so it keeps its Phi. A map that was inferred in another environment
+    or on another map shapes by 1/20 of it only, for the order of its states may mislead here.
     on_violation "terminate": ends the episode. "penalise": the episode goes on, and from the next sample on the
     requirement is watched afresh, so that staying in a forbidden place costs 1 a step. "ignore": costs nothing.
+    Where the environment terminates an episode, a hard requirement that is still open and does not hold so far
+    is violated at that step; where it truncates one, nothing is decided.
     """
 
     def __init__(
@@ -69,12 +81,12 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         Args:    env: any environment of gymnasium; the built-in ones offer their signals by name, all others
                  through `from "obs[0]"`, `from "obs.key[1]"`, `from "info.speed"`, `from "action[0]"`.
                  spec: the path of a spec or bundle, or the text of a spec. reward: a reward map, its document,
-                 or its path.
+                 or its path; a Python warning tells that it is of another spec (D865) or place (D883).
                  gamma: the discount that the agent uses, in [0, 1]. base, on_violation: see the class.
                  params: of the spec.
         Raises:  SpecError, InputError: the spec or the reward map cannot be used; UsageError D870: a signal is
                  not offered; D871: an option is out of range; D876: the spec measures stamps; D880: the
-                 environment resets itself.
+                 environment resets itself, or `reward` is none.
         """
         if isinstance(env, gymnasium.vector.VectorEnv):
             what = "STLReward wraps one environment, and this is a vector of them"
@@ -96,11 +108,13 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         self.gamma, self.base, self.on_violation = float(gamma), base, on_violation
         self._known = _known(env)
         self._readers = _readers(self.bundle, self._known, _id(env))
-        self._potential = _Potential(reward, self._known)
+        self._potential = _Potential(_reward(reward), self._known, None if env.spec is None else env.spec.id)
+        self._potential.warn(self.bundle)
         self._hard = [r.name for r in self.bundle.requirements if r.strength == "hard"]
         soft = [(r.name, w) for r, w in zip(self.bundle.requirements, self.bundle.weights, strict=True)]
         soft = [(name, weight) for name, weight in soft if name not in self._hard]
         self._shares = {name: weight / sum(w for _, w in soft) for name, weight in soft}
+        self._before = _prerequisites(self.bundle)
         used = {str(node.value) for node in self.bundle.nodes if node.op in ("signal", "bool")}
         self._late = any((s.source or "").startswith("action") for s in self.bundle.signals if s.name in used)
         self._over = True
@@ -134,6 +148,7 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
             violated = self._look(self._first[0], action, self._first[1])
             self._first = None
         violated = self._look(observation, action, info) or violated
+        violated = violated or (bool(terminated) and self._unmet(self._hard))
         self._began_badly = False
         gained = float(own) if self.base == "env" else self._gained()
         if violated and self.on_violation != "ignore":
@@ -150,6 +165,7 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         """Show the monitors a sample; tell whether it violates a hard requirement."""
         sample = sample_of(self._readers, observation, action, info, _id(self.env))
         self._standing = self._monitor.update(sample)
+        self._ends = self._monitor.finish()
         violated = False
         for name, guard in self._guards.items():
             if guard.update(sample)[name].verdict is Verdict.VIOLATED:
@@ -157,16 +173,25 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
                 self._guards[name] = make_monitor(_alone(self.bundle, name))
         return violated
 
+    def _unmet(self, names: Iterable[str]) -> bool:
+        """Tell whether one of some requirements is open and would be violated if the episode ended here."""
+        standing, ends = self._standing, self._ends
+        return any(
+            standing[name].verdict is Verdict.UNDECIDED and ends[name].verdict is Verdict.VIOLATED for name in names
+        )
+
     def _gained(self) -> float:
-        held = {n for n in self._shares if self._standing[n].verdict is Verdict.SATISFIED} - self._paid
+        certain = {n for n in self._shares if self._standing[n].verdict is Verdict.SATISFIED} - self._paid
+        held = {name for name in certain if not self._unmet(self._before[name])}
         self._paid |= held
         return sum((self._shares[name] for name in sorted(held)), -STEP_COST)
 
     def _settled(self) -> bool:
-        """Tell whether the spec has nothing more to pay for."""
+        """Tell whether the spec has nothing more to pay for, and nothing more to ask for."""
         if self.base == "env" or not self._shares:
             return False
-        return all(self._standing[name].verdict is not Verdict.UNDECIDED for name in self._shares)
+        decided = all(self._standing[name].verdict is not Verdict.UNDECIDED for name in self._shares)
+        return decided and not self._unmet(self._hard)
 
     def _report(self, violated: bool) -> dict[str, Any]:
         names = [r.name for r in self.bundle.requirements]
@@ -176,7 +201,7 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
                 "satisfied": dict.fromkeys(names, False),
                 "violation": False,
             }
-        ends = self._monitor.finish()
+        ends = self._ends
         return {
             "robustness": {name: float(ends[name].robustness) for name in names},
             "satisfied": {name: ends[name].verdict is Verdict.SATISFIED for name in names},
@@ -209,6 +234,13 @@ def _bundle(spec: "str | Path | BundleData", params: Mapping[str, float | str] |
     if isinstance(spec, Path) or ("\n" not in spec and spec.endswith((".stl", ".stlspec", ".stlb"))):
         return api.read(spec, params)
     return api.compile(spec, params)
+
+
+def _prerequisites(bundle: BundleData) -> dict[str, list[str]]:
+    """Return the names of all that each requirement depends on, in one step or several."""
+    names = [r.name for r in bundle.requirements]
+    above = ancestors({r.name: r.depends_on for r in bundle.requirements})
+    return {name: [names[i] for i in range(len(names)) if above[name] >> i & 1] for name in names}
 
 
 def _alone(bundle: BundleData, name: str) -> BundleData:
@@ -261,11 +293,8 @@ def _look_up(table: list[Any]) -> Reader:
 class _Potential:
     """The reward map as a function of observations; 0 without one."""
 
-    def __init__(self, reward: "str | Path | Mapping[str, Any] | RewardMap | None", known: Environment | None) -> None:
-        if isinstance(reward, str | Path):
-            reward = load_reward(reward)
-        elif isinstance(reward, Mapping):
-            reward = _read(reward)
+    def __init__(self, reward: RewardMap | None, known: Environment | None, env: str | None) -> None:
+        self._reward, self._foreign = reward, False
         self._values: dict[int, float] = {}
         self._home: Environment | None = None
         if reward is None:
@@ -279,8 +308,18 @@ class _Potential:
         if home is None or not home.size:
             what = "the states of the reward map have no numbers here"
             raise UsageError([diagnostic("D880", what=what, help="infer it in the same environment, with --bins")])
-        self._home = home
-        self._values = {s: value for s, value in enumerate(reward.table(home)) if value}
+        self._home, self._foreign = home, not _made_here(reward, known, env)
+        scale = ELSEWHERE if self._foreign else 1.0
+        self._values = {s: scale * value for s, value in enumerate(reward.table(home)) if value}
+
+    def warn(self, bundle: BundleData) -> None:
+        """Warn where the reward map is not of this spec, or not of this environment."""
+        if self._reward is None:
+            return
+        found = [diagnostic("D865")] if self._reward.meaning_sha256 != meaning_sha256(bundle) else []
+        found += [diagnostic("D883")] if self._foreign else []
+        for warning in found:
+            warnings.warn(render(warning), stacklevel=3)
 
     def __call__(self, observation: Any) -> float:
         """Return Phi of an observation."""
@@ -290,11 +329,32 @@ class _Potential:
         return self._values.get(self._home.encode(plain), 0.0)
 
 
-def _read(document: Mapping[str, Any]) -> RewardMap:
-    try:
-        return read_reward(document)
-    except DamageError as error:
-        raise DataError([diagnostic("D863", file="the reward map", problem=str(error))]) from None
+def _reward(reward: Any) -> RewardMap | None:
+    """Return a reward map from what the caller has: the map, its document or its path."""
+    if isinstance(reward, str | Path):
+        return load_reward(reward)
+    if isinstance(reward, Mapping):
+        try:
+            return read_reward(reward)
+        except DamageError as error:
+            raise DataError([diagnostic("D863", file="the reward map", problem=str(error))]) from None
+    if reward is None or isinstance(reward, RewardMap):
+        return reward
+    what = f"`reward` is a reward map, its document or its path, not {type(reward).__name__}"
+    raise UsageError([diagnostic("D880", what=what, help="make one: stlspec reward SPEC DEMO... -o R.json")])
+
+
+def _made_here(reward: RewardMap, known: Environment | None, env: str | None) -> bool:
+    """Tell whether a reward map was inferred in this environment, on this map where it has one."""
+    if known is None:
+        return env is None or reward.environment.get("id") == env
+    home = _home_of(reward)
+    return home is not None and home.id == known.id and _cells(home) == _cells(known)
+
+
+def _cells(environment: Environment) -> list[str]:
+    """Return the rows of a map; where episodes begin does not count."""
+    return [row.replace("S", ".").replace("F", ".") for row in environment.map or ()]
 
 
 def _home_of(reward: RewardMap) -> Environment | None:

@@ -241,3 +241,107 @@ def test_a_spec_may_be_a_path_a_text_or_a_bundle(tmp_path):
         env = STLReward(gymnasium.make("FrozenLake-v1"), spec)
         assert env.bundle.meaning_sha256 == bundle.meaning_sha256
     assert Path(place).exists()
+
+
+CORRIDOR = 'signal s from "obs[0]"\n'
+LATE = CORRIDOR + "hard g: eventually (s >= 9)\nsoft r depends on g: eventually (s >= 3)"
+
+
+class Corridor(gymnasium.Env):
+    """Cells 0 to 6 in one line; it terminates at the last one, or is truncated there."""
+
+    observation_space = gymnasium.spaces.Box(0, 6, (1,))
+    action_space = gymnasium.spaces.Discrete(2)
+
+    def __init__(self, truncates=False):
+        self.truncates = truncates
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        return np.array([0.0], dtype=np.float32), {}
+
+    def step(self, action):
+        self.cell = min(6, self.cell + int(action))
+        over = self.cell == 6
+        return np.array([self.cell], np.float32), 0.0, over and not self.truncates, over and self.truncates, {}
+
+
+def walk(spec, **options):
+    env = STLReward(Corridor(options.pop("truncates", False)), spec, **options)
+    env.reset(seed=0)
+    rows = [env.step(1)]
+    while not any(rows[-1][2:4]):
+        rows.append(env.step(1))
+    return rows
+
+
+@pytest.mark.parametrize(("on_violation", "cost"), [("terminate", -1.0), ("penalise", -1.0), ("ignore", 0.0)])
+def test_a_hard_requirement_that_was_not_met_when_the_episode_terminates_is_violated_once(on_violation, cost):
+    rows = walk(LATE, on_violation=on_violation)
+    assert [row[1] for row in rows] == [0.0] * 5 + [cost]
+    assert [row[4]["violation"] for row in rows] == [False] * 5 + [True]
+    assert rows[-1][2:4] == (True, False)
+    assert rows[-1][4]["satisfied"]["g"] is False
+
+
+def test_a_truncated_episode_decides_nothing():
+    last = walk(LATE, truncates=True)[-1]
+    assert (last[1], last[2], last[3], last[4]["violation"]) == (0.0, False, True, False)
+
+
+def test_what_was_violated_before_is_not_charged_again_at_the_end():
+    spec = CORRIDOR + "hard soon: eventually[0, 2] (s >= 5)\nhard far: eventually (s >= 6)"
+    rows = walk(spec, on_violation="penalise")
+    assert [row[1] for row in rows] == [0.0, -1.0, 0.0, 0.0, 0.0, 0.0]
+
+
+def test_the_spec_neither_pays_nor_ends_before_what_comes_first_is_met():
+    spec = CORRIDOR + "hard g: eventually (s >= 5)\nsoft r depends on g: eventually (s >= 2)"
+    rows = walk(spec + "\nsoft free: eventually (s >= 1)", base="spec")
+    assert [row[2] for row in rows] == [False] * 4 + [True]
+    # both have a share, and the one that depends on nothing is paid at once
+    assert rows[0][1] > 0.2
+    assert [row[1] for row in rows[1:4]] == [-0.01] * 3
+    assert sum(row[1] for row in rows) == pytest.approx(1 - 5 * 0.01)
+
+
+def test_the_spec_does_not_wait_for_what_is_violated_for_good():
+    spec = CORRIDOR + "hard g: eventually[0, 1] (s >= 5)\nsoft r depends on g: eventually (s >= 3)"
+    rows = walk(spec, base="spec", on_violation="ignore")
+    assert [row[1] for row in rows] == [-0.01, -0.01, pytest.approx(0.99)]
+    assert rows[-1][2]
+
+
+def test_a_hard_requirement_that_holds_so_far_keeps_no_episode_open():
+    _, second = steps(grid(base="spec"), [RIGHT, RIGHT])
+    assert second[2]
+
+
+def test_a_reward_map_of_another_spec_is_told():
+    world = make_environment("stlspec/GridWorld-v0", None, ROWS)
+    reward = infer_reward(api.compile(GRID), [make_demonstration("d", states=[[0, 0], [0, 1], [0, 2]])], world)
+    env = gymnasium.make("stlspec/GridWorld-v0", map=ROWS)
+    with pytest.warns(UserWarning, match="D865") as told:
+        wrapped = STLReward(env, GRID.replace("[0, 3]", "[0, 4]"), reward)
+    assert [str(w.filename) for w in told] == [__file__]
+    assert wrapped._potential(2) == reward.values[2]
+
+
+def test_a_reward_map_from_another_map_or_environment_is_told_and_shapes_little():
+    world = make_environment("stlspec/GridWorld-v0", None, ROWS)
+    reward = infer_reward(api.compile(GRID), [make_demonstration("d", states=[[0, 0], [0, 1], [0, 2]])], world)
+    elsewhere = gymnasium.make("stlspec/GridWorld-v0", map=["S..", "#.G"])
+    lake = gymnasium.make("FrozenLake-v1", desc=["SFG", "FHF"])
+    for env in (elsewhere, lake):
+        with pytest.warns(UserWarning, match="D883"):
+            wrapped = STLReward(env, GRID, reward)
+        assert wrapped._potential(2) == pytest.approx(0.05 * reward.values[2])
+    another_start = gymnasium.make("stlspec/GridWorld-v0", map=["..G", "S#."])
+    assert STLReward(another_start, GRID, reward)._potential(2) == reward.values[2]
+
+
+@pytest.mark.parametrize("reward", [3, ["R.json"], True])
+def test_what_is_no_reward_map_is_refused(reward):
+    with pytest.raises(UsageError, match="`reward` is a reward map, its document"):
+        grid(reward=reward)

@@ -162,6 +162,18 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "D883",
+        "a reward map from another environment or map",
+        "warning",
+        message="the reward map was inferred in another environment or on another map, so it shapes little here",
+        help="harmless; for its full weight infer it here: stlspec reward SPEC DEMO... --env ID -o R.json",
+        explanation="On another map the order of the states of a reward map may mislead. Shaping never changes which "
+        "policies are optimal, but what misleads costs steps, so such a map counts for a twentieth in STLReward.",
+        bad='# STLReward(gymnasium.make("FrozenLake-v1", map_name="4x4"), SPEC, reward="from_8x8.json")\n',
+        good='# STLReward(gymnasium.make("FrozenLake-v1", map_name="8x8"), SPEC, reward="from_8x8.json")\n',
+        kind="shown",
+    ),
+    Code(
         "X901",
         "a fault of stlspec",
         "error",
