@@ -19,6 +19,7 @@ from stlspec.compiler.bundle import BundleData, Requirement
 from stlspec.compiler.bundle_file import meaning_sha256
 from stlspec.demos import Demonstration
 from stlspec.documents import DamageError, State, read_document, read_state
+from stlspec.envs.bins import read_bins
 from stlspec.envs.model import Environment
 from stlspec.errors import DataError, Diagnostic, diagnostic
 from stlspec.markup.figures import standalone
@@ -90,8 +91,10 @@ class RewardMap:
         Paper: section 3.2, "on a map that could be the same as train map or an unseen map of similar size".
 
         Returns: (n_states,).
-        Raises:  DataError D862: the environment lacks one of the states.
+        Raises:  DataError D862: the environment lacks one of the states; D858: its bins are others; D863: the bins
+                 of the map are damaged.
         """
+        _check_bins(self.environment, environment)
         table = [0.0] * environment.size
         for state, value in zip(self.states, self.values, strict=True):
             try:
@@ -109,6 +112,26 @@ class RewardMap:
             "states": [list(s) if isinstance(s, tuple) else s for s in self.states],
             "values": list(self.values),
         }
+
+
+def _check_bins(made: Mapping[str, Any], environment: Environment) -> None:
+    """Refuse a map over other bins than the environment's: the same numbers would mean other observations."""
+    if made.get("bins") is None:
+        return
+    try:
+        bins = read_bins(made["bins"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise DataError([diagnostic("D863", file="the reward map", problem="'bins' is damaged")]) from None
+    here = environment.bins
+    if bins == here:
+        return
+    ranges = here is not None and bins.counts == here.counts
+    now = "numbers its states itself" if here is None else f"is cut into {here.text(ranges=ranges)}"
+    help_ = "take a reward map that was inferred in this environment"
+    if here is not None and environment.id == made.get("id") and not ranges:
+        again = f"infer it again from the demonstrations: --demos DEMO... --bins {here.text()}"
+        help_ = f"use the bins of the map: --bins {bins.text()}; or {again}"
+    raise DataError([diagnostic("D858", made=bins.text(ranges=ranges), env=environment.id, now=now, help=help_)])
 
 
 def rising_values(reward: float, length: int) -> list[float]:

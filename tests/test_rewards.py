@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from stlspec import api, rewards
 from stlspec.demos import make_demonstration
+from stlspec.envs.bins import Bins
 from stlspec.envs.catalogue import make_environment
+from stlspec.envs.model import Environment
 from stlspec.errors import DataError
 from stlspec.rewards import (
     RewardMap,
@@ -221,6 +223,42 @@ def test_a_map_carries_over_to_a_map_of_the_same_size_and_to_no_smaller_one():
     with pytest.raises(DataError) as caught:
         reward.table(make_environment("stlspec/GridWorld-v0", None, ("S.", ".G")))
     assert code(caught) == "D862"
+
+
+CAR_BINS = Bins((-1.2, -0.07), (0.6, 0.07), (20, 20))
+
+
+@pytest.mark.parametrize(
+    ("bins", "parts"),
+    [
+        (
+            Bins((-1.2, -0.07), (0.6, 0.07), (25, 16)),
+            ("bins 20,20,", "is cut into 25,16 here", "--bins 20,20; or infer"),
+        ),
+        (
+            Bins((-1.2, -0.07), (0.6, 0.07), (10, 10)),
+            ("bins 20,20,", "is cut into 10,10 here", "--bins 20,20; or infer"),
+        ),
+        (Bins((-1.2, -0.07), (0.6, 0.08), (20, 20)), ("20,20 of [-1.2, 0.6] x [-0.07, 0.07]", "x [-0.07, 0.08]")),
+        (None, ("numbers its states itself",)),
+    ],
+)
+def test_a_map_over_bins_is_refused_where_the_bins_are_others(bins, parts):
+    """25,16 has as many bins as 20,20: without the refusal every value would land on some other bin."""
+    home = {"id": "MountainCar-v0", "args": {}, "map": None, "bins": CAR_BINS.to_json()}
+    reward = RewardMap("", home, (210,), (1.0,))
+    with pytest.raises(DataError) as caught:
+        reward.table(Environment("MountainCar-v0", n_states=0 if bins else 400, bins=bins))
+    assert code(caught) == "D858"
+    assert all(part in str(caught.value) for part in parts)
+    assert reward.table(Environment("MountainCar-v0", bins=CAR_BINS))[210] == 1.0
+
+
+def test_damaged_bins_of_a_map_are_refused():
+    reward = RewardMap("", {"id": "MountainCar-v0", "bins": {"low": "?"}}, (1,), (1.0,))
+    with pytest.raises(DataError) as caught:
+        reward.table(Environment("MountainCar-v0", bins=CAR_BINS))
+    assert code(caught) == "D863"
 
 
 REWARD = infer_reward(BUNDLE, [GOOD, BAD], WORLD)

@@ -76,6 +76,12 @@ class Bins:
 
         return general
 
+    def text(self, *, ranges: bool = False) -> str:
+        """Write the counts as `--bins` takes them, and where asked for, what is cut into them."""
+        counts = ",".join(map(str, self.counts))
+        ends = zip(self.low, self.high, strict=True)
+        return counts + (" of " + " x ".join(f"[{low:g}, {high:g}]" for low, high in ends) if ranges else "")
+
     def to_json(self) -> dict[str, Any]:
         """Return the form that a policy file keeps."""
         squashed = {"squashed": list(self.squashed)} if any(self.squashed) else {}

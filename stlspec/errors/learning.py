@@ -1,8 +1,20 @@
-"""D860 to D879: scores that cannot be weighed, reward maps, and tasks that the learner cannot take."""
+"""D858 to D879: scores that cannot be weighed, reward maps, steps, and tasks that the learner cannot take."""
 
 from stlspec.errors.model import Code
 
 CODES: tuple[Code, ...] = (
+    Code(
+        "D858",
+        "a reward map over other bins",
+        "error",
+        message="the reward map has values for the bins {made}, but '{env}' {now} here",
+        help="{help}",
+        explanation="Where observations are cut otherwise, the number of a bin means another part of them, so values "
+        "that were inferred over some bins cannot be used over others.",
+        bad="# stlspec learn ... --env MountainCar-v0 --bins 25,16 --reward R.json   where R.json was made with 20,20\n",
+        good="# stlspec learn ... --env MountainCar-v0 --bins 20,20 --reward R.json\n",
+        kind="shown",
+    ),
     Code(
         "D860",
         "an infinite robustness that is not bounded",

@@ -152,12 +152,12 @@ def _notes_on_bad(evidence: Evidence, method: str, mask: bool) -> tuple[str, ...
         return ()
     count = f"{evidence.bad} bad demonstration{'' if evidence.bad == 1 else 's'}"
     if method == "paper" or not mask:
-        through = "the reward map" if method == "paper" else "the pictures"
-        return (f"{count}: no mask, so only {through} can show what went wrong",)
+        use = "only the reward map can show" if method == "paper" else "training does not use"
+        return (f"{count}: no mask, so {use} what went wrong",)
     used = evidence.bad - evidence.bad_elsewhere
     if not used:
         return (f"{count}, made on another map: what was forbidden there may be free here, so nothing is masked",)
     pairs = len(evidence.violating)
     known = f"{pairs} step{'' if pairs == 1 else 's'} forbidden from the start"
     elsewhere = "" if used == evidence.bad else f" ({evidence.bad - used} made on another map)"
-    return (f"{count}{elsewhere}: {known}; the reward does not show them",)
+    return (f"{count}{elsewhere}: {known}; training does not use their values in the reward map",)

@@ -9,6 +9,7 @@ from stlspec.errors import DataError
 from stlspec.learning.evidence import gather, notes, violating_pairs
 from stlspec.learning.shaping import GOAL, RUNS, VIOLATION
 from stlspec.learning.task import SETTLED, Task, make_world, segment
+from stlspec.learning.training import guide_of
 from stlspec.rewards import infer_reward
 
 # 0 -> 1 by both actions, 1 -> 2 (violates) by action 1
@@ -75,13 +76,27 @@ def test_a_reward_of_0_is_a_warning(small):
 def test_the_report_says_what_bad_demonstrations_did(small):
     evidence = gathered(small)
     assert "2 steps forbidden from the start" in notes(evidence, "shaped", True)[0]
-    assert "forbidden from the start" in notes(evidence, "plain", True)[0]
+    assert "forbidden from the start; training does not use their values" in notes(evidence, "plain", True)[0]
     assert "another map" in notes(replace(evidence, bad_elsewhere=evidence.bad), "shaped", True)[0]
-    assert "only the pictures" in notes(evidence, "shaped", False)[0]
+    assert "training does not use what went wrong" in notes(evidence, "shaped", False)[0]
     assert "only the reward map" in notes(evidence, "paper", False)[0]
     assert notes(replace(evidence, bad=0), "shaped", True) == ()
     assert "it shapes little" in notes(replace(evidence, bad=0, at_home=False), "shaped", True)[0]
     assert notes(replace(evidence, bad=0, at_home=False), "plain", True) == ()
+
+
+def test_values_of_bad_demonstrations_stand_in_the_map_and_training_does_not_use_them(small):
+    """What the report says of bad demonstrations, held to what the reward map and the potential are."""
+    bundle, world, _ = small
+    evidence = gathered(small)
+    assert min(evidence.reward.table(world)) < 0
+    without = gathered(
+        small, demonstrations=[d for d, r in zip(small[2], evidence.ranked, strict=True) if r.label != "bad"]
+    )
+    goal = [value == max(evidence.reward.table(world)) for value in evidence.reward.table(world)]
+    shaped, same = (guide_of(e, world, "shaped")(world.start, goal) for e in (evidence, without))
+    assert min(shaped) >= 0.0
+    assert [value > 0 for value in shaped] == [value > 0 for value in same]
 
 
 def test_a_demonstration_of_an_environment_that_cannot_be_made_is_not_taken_for_one_of_this_map(small):

@@ -7,7 +7,7 @@ import pytest
 from stlspec import api
 from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
-from stlspec.errors import UsageError
+from stlspec.errors import DataError, UsageError
 from stlspec.learning import learn, load_policy
 from stlspec.learning.experience import one_goal, refuse, settle_table
 from stlspec.learning.settings import Settings
@@ -117,6 +117,10 @@ def test_demonstrations_in_bins_shape_the_values():
     outcome = learn(api.compile(CAR), car, demos, bins=(12, 12), episodes=25, max_steps=50)
     assert len(outcome.reward.states) >= 2
     assert max(outcome.reward.values) == 1.0
+    with pytest.raises(DataError) as caught:
+        learn(api.compile(CAR), car, reward=outcome.reward, bins=(16, 9), episodes=25, max_steps=50)
+    assert caught.value.diagnostics[0].code == "D858"
+    assert "--bins 12,12" in caught.value.diagnostics[0].help
 
 
 @pytest.mark.parametrize(
