@@ -34,8 +34,6 @@ from stlspec.scores import DemonstrationScore, Ranking, moment
 Progress = Callable[[int, int, int], None]
 _WIDTH_OF_FILES = 10_000
 _STYLES = {"good": "green", "incomplete": "yellow", "bad": "red", "satisfied": "green", "violated": "red"}
-_NEVER = 0.0005
-"""A probability below this is shown as 0.000."""
 _MARKS = {"satisfied": "✓", "violated": "✗", "undecided": "?"}
 
 
@@ -252,7 +250,7 @@ def files_progress(stream: TextIO, total: int) -> Iterator[Callable[[int, str], 
 def print_outcome(outcome: Outcome, bundle: BundleData, environment: Environment, out: Path, stream: TextIO) -> None:
     """Print what was learnt: requirements with margins, the path on the map, the training, the files."""
     console = console_for(stream)
-    console.print(Text(f"The policy {_success(outcome)}.", "bold green" if outcome.success else "bold yellow"))
+    console.print(Text(_success(outcome), "bold green" if outcome.success else "bold yellow"))
     _print_table(_margins(outcome, bundle), console)
     drawing = way_on_map(environment, outcome.states)
     if drawing:
@@ -270,12 +268,18 @@ def _success(outcome: Outcome) -> str:
     """Say whether the policy meets the spec, so that one that never does is not taken for a success."""
     chance = outcome.satisfaction
     if chance is None:
-        return "meets every requirement" if outcome.success else "does not meet every requirement"
-    if chance.value >= _NEVER:
-        return f"meets every requirement with probability {interval_of(chance)}"
-    never = [name for name, alone in chance.alone.items() if alone < _NEVER]
-    which = f"; {' and '.join(never)} never hold{'s' if len(never) == 1 else ''}" if never else ""
-    return f"does not meet every requirement: all hold with probability {interval_of(chance)}{which}"
+        return f"The policy {'meets' if outcome.success else 'does not meet'} every requirement."
+    said = [f"All requirements hold with probability {interval_of(chance)}."]
+    never = [name for name, alone in chance.alone.items() if alone == 0.0]
+    if never:
+        where = "" if chance.n is None else f" in {chance.n} runs"
+        said.append(f"{' and '.join(never)} never hold{'s' if len(never) == 1 else ''}{where}.")
+    if not chance.meets_hard:
+        odds = probability_text(chance.hard)
+        said.append(
+            f"The hard ones hold no more often than not (probability {odds}), so the policy does not meet them."
+        )
+    return " ".join(said)
 
 
 def _margins(outcome: Outcome, bundle: BundleData) -> Table:
@@ -285,9 +289,12 @@ def _margins(outcome: Outcome, bundle: BundleData) -> Table:
     for requirement in bundle.requirements:
         if chance is not None:
             alone = chance.alone[requirement.name]
-            verdict = "satisfied" if alone == 1.0 else "violated" if alone < _NEVER else ""
+            verdict = "satisfied" if alone == 1.0 else "violated" if alone == 0.0 else ""
             mark = Text(f"  {_MARKS.get(verdict, '~')} {requirement.name}", _STYLES.get(verdict, ""))
-            table.add_row(mark, requirement.strength, f"holds with probability {alone:.3f}")
+            often = f"with probability {probability_text(alone)}"
+            if chance.n is not None:
+                often = f"in {round(alone * chance.n):,} of {chance.n:,} runs"
+            table.add_row(mark, requirement.strength, f"holds {often}")
             continue
         result = outcome.evaluation[requirement.name]
         verdict = result.verdict.value
@@ -313,11 +320,20 @@ def print_source(source: Source, stream: TextIO) -> None:
     console_for(stream).print(Text("\n".join(sources(source))))
 
 
+def probability_text(value: float) -> str:
+    """Write a probability with three decimals, or as many as it takes to tell it from 0 and 1 where it is neither."""
+    if value in (0.0, 1.0):
+        return f"{value:.0f}"
+    return next((text for text in (f"{value:.{k}f}" for k in range(3, 16)) if 0 < float(text) < 1), f"{value:.1e}")
+
+
 def interval_of(found: Satisfaction) -> str:
     """Return a probability as text: the number where it is exact, else with its interval."""
-    if found.method == "exact":
-        return f"{found.value:.4f}"
-    return f"{found.value:.3f} (95 % interval {found.low:.3f} to {found.high:.3f}, {found.n} runs)"
+    text = probability_text(found.value)
+    if found.n is None:
+        return text
+    low, high = map(probability_text, (found.low, found.high))
+    return f"{text} (95 % interval {low} to {high}, {found.n:,} runs)"
 
 
 def _training_lines(outcome: Outcome) -> list[str]:

@@ -1,6 +1,7 @@
 """Results are readable: nothing is cut off, infinities are signs, the path is on the map."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import stlspec
 from stlspec import report
 from stlspec.learning.lessons import Source
+from stlspec.learning.satisfaction import from_runs
 
 SPECS = Path(__file__).parents[1] / "specs"
 
@@ -55,3 +57,15 @@ def test_progress_is_silent_where_there_is_no_terminal() -> None:
     with report.progress(stream) as show:
         show(1, 2, 3)
     assert stream.getvalue() == ""
+
+
+def test_a_probability_is_never_rounded_to_a_certainty() -> None:
+    values = (0.0, 1.0, 0.5, 0.0001, 0.000107, 0.99996, 1e-20)
+    shown = ["0", "1", "0.500", "0.0001", "0.0001", "0.99996", "1.0e-20"]
+    assert [report.probability_text(value) for value in values] == shown
+
+
+def test_the_share_of_runs_comes_with_its_interval_and_a_certain_share_with_none() -> None:
+    found = from_runs(stlspec.compile("signal x\nhard a: always (x > 0)"), [{"a": True}] * 199 + [{"a": False}])
+    assert report.interval_of(found) == "0.995 (95 % interval 0.972 to 0.999, 200 runs)"
+    assert report.interval_of(replace(found, value=0.25, method="exact", n=None)) == "0.250"

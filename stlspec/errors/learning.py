@@ -11,7 +11,7 @@ CODES: tuple[Code, ...] = (
         help="{help}",
         explanation="Where observations are cut otherwise, the number of a bin means another part of them, so values "
         "that were inferred over some bins cannot be used over others.",
-        bad="# stlspec learn ... --env MountainCar-v0 --bins 25,16 --reward R.json   where R.json was made with 20,20\n",
+        bad="# stlspec learn ... --env MountainCar-v0 --bins 25,16 --reward R.json  (R.json: 20,20)\n",
         good="# stlspec learn ... --env MountainCar-v0 --bins 20,20 --reward R.json\n",
         kind="shown",
     ),

@@ -228,7 +228,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         goal_order=(scene.runner.goal_name,),
         stops=(len(shown.actions),) if endings and endings[shown.states[-1]] == GOAL else (),
         evaluation=shown.evaluation,
-        meets_hard=satisfaction.hard > 0.0,
+        meets_hard=satisfaction.meets_hard,
         training=Training(
             len(sampler.steps), sum(sampler.steps), None, None, sampler.violations, sampler.masked, 0, seconds
         ),

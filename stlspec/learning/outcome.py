@@ -83,8 +83,8 @@ class Outcome:
     arriving; None if it does not. lessons: what each demonstration taught. stops: the samples of the path at
     which it reaches one goal after the other. warnings, notes: what the user should know. files: names of the
     files in the output directory. satisfaction: where transitions are by chance, how likely the requirements
-    hold; the path is then one run of the policy, success means that the probability is 1, and meets_hard that
-    it is not 0 for the hard ones. observations: of that run, where states are bins.
+    hold; the path is then one run of the policy, success means that the probability is 1 (that all runs met all),
+    and meets_hard that the hard ones hold more often than not. observations: of that run, where states are bins.
     """
 
     settings: Settings

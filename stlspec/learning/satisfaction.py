@@ -23,6 +23,9 @@ RUNS_OF_THE_POLICY = 1000
 MOST_WORK = 5_000_000
 """The largest number of pairs of state and memory, over all samples, that the exact way may visit."""
 
+ODDS = 0.5
+"""Hard requirements count as met by a policy if all of them hold with a higher probability: more often than not."""
+
 _Z = 1.959963984540054
 
 
@@ -42,6 +45,11 @@ class Satisfaction:
     hard: float
     alone: Mapping[str, float]
 
+    @property
+    def meets_hard(self) -> bool:
+        """Whether the hard requirements hold more often than not: by chance, hardly a policy always meets them."""
+        return self.hard > ODDS
+
     def to_json(self) -> dict[str, Any]:
         """Return the part of the `stlspec.learn/1` document."""
         return {
@@ -50,6 +58,8 @@ class Satisfaction:
             "high": number(self.high),
             "method": self.method,
             "n": self.n,
+            "hard": number(self.hard),
+            "meets_hard": self.meets_hard,
         }
 
 

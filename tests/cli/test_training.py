@@ -61,8 +61,36 @@ def test_a_policy_that_never_meets_the_spec_does_not_read_like_a_success(
     )
     run(["learn", str(spec), *LAKE[1:], "--episodes", "3000", "--out", str(tmp_path / "run")])
     text = capsys.readouterr().out
-    assert "The policy does not meet every requirement: all hold with probability 0.0000; early never holds.\n" in text
-    assert "  ✗ early  soft  holds with probability 0.000\n" in text
+    assert text.startswith("All requirements hold with probability 0. early never holds.\n")
+    assert "  ✗ early  soft  holds with probability 0\n" in text
+
+
+def test_where_moves_are_by_chance_hard_requirements_are_met_if_they_hold_more_often_than_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beside two holes one stays dry for 100 steps with (2/3)^100, 2.5e-18; text, JSON and exit code say the same."""
+    spec, rows, demo, out = (tmp_path / name for name in ("lake.stl", "lake.txt", "demo.json", "run"))
+    spec.write_text("signal d_obs\nsignal d_goal\nhard dry: always (d_obs >= 1)\nsoft reach: eventually (d_goal < 1)\n")
+    rows.write_text("SH\nHG\n")
+    demo.write_text('{"states": [[0, 0], [0, 1]]}')
+    words = ["learn", str(spec), "--env", "FrozenLake-v1", "--map", str(rows), "--demos", str(demo)]
+    assert run([*words, "--episodes", "100", "--out", str(out)]) == 1
+    text = capsys.readouterr().out
+    assert text.startswith(
+        "All requirements hold with probability 0. reach never holds. The hard ones hold no more often than not "
+        "(probability 2.5e-18), so the policy does not meet them.\n"
+    )
+    assert "  ~ dry    hard  holds with probability 2.5e-18\n" in text
+    result = json.loads((out / "result.json").read_text())
+    assert not result["success"]
+    assert not result["satisfaction_probability"]["meets_hard"]
+    assert result["satisfaction_probability"]["hard"] == pytest.approx((2 / 3) ** 100)
+    assert run(["learn", *LAKE, "--episodes", "1000", "--out", str(out)]) == 0
+    assert not capsys.readouterr().out.startswith("The policy meets")
+    result = json.loads((out / "result.json").read_text())
+    assert 0.5 < result["satisfaction_probability"]["hard"] < 1
+    assert result["satisfaction_probability"]["meets_hard"]
+    assert not result["success"]
 
 
 def test_a_path_by_chance_says_whether_it_reaches_the_goal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

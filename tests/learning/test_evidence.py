@@ -87,7 +87,7 @@ def test_the_report_says_what_bad_demonstrations_did(small):
 
 def test_values_of_bad_demonstrations_stand_in_the_map_and_training_does_not_use_them(small):
     """What the report says of bad demonstrations, held to what the reward map and the potential are."""
-    bundle, world, _ = small
+    world = small[1]
     evidence = gathered(small)
     assert min(evidence.reward.table(world)) < 0
     without = gathered(

@@ -81,5 +81,15 @@ def test_runs_are_counted():
     found = from_runs(bundle, runs)
     assert (found.value, found.n, found.hard, found.method) == (0.75, 4, 1.0, "rollouts")
     assert found.alone == {"avoid": 1.0, "reach": 1.0, "fast": 0.75}
-    assert found.to_json() == {"value": 0.75, "low": found.low, "high": found.high, "method": "rollouts", "n": 4}
+    shown = {"value": 0.75, "low": found.low, "high": found.high, "method": "rollouts", "n": 4}
+    assert found.to_json() == {**shown, "hard": 1.0, "meets_hard": True}
     assert found.low < 0.75 < found.high
+
+
+@pytest.mark.parametrize(("met", "expected"), [(0, False), (2, False), (100, False), (101, True), (200, True)])
+def test_hard_requirements_are_met_if_they_hold_more_often_than_not(met, expected):
+    """A hard requirement that holds in 1 % of the runs is not met by the policy."""
+    runs = [{"avoid": k < met, "reach": False, "fast": False} for k in range(200)]
+    found = from_runs(api.compile(SPEC), runs)
+    assert found.meets_hard is expected is found.to_json()["meets_hard"]
+    assert found.to_json()["hard"] == met / 200
