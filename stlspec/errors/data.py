@@ -93,8 +93,8 @@ CODES: tuple[Code, ...] = (
         help="guard the expression, or keep its operands in the range where it is defined",
         explanation="An expression such as sqrt(x) with x below 0, or inf - inf, has no value; a requirement "
         "over it would have none either.",
-        bad="# hard ok: sqrt(x) < 2\ntime,x\n0,-1\n",
-        good="# hard ok: sqrt(x) < 2\ntime,x\n0,1\n",
+        bad="# hard ok: always (sqrt(x) < 2)\ntime,x\n0,-1\n",
+        good="# hard ok: always (sqrt(x) < 2)\ntime,x\n0,1\n",
         kind="shown",
     ),
     Code(

@@ -13,8 +13,8 @@ CODES: tuple[Code, ...] = (
         label="{edge}",
         help="remove one of these dependencies",
         explanation="Dependencies order the requirements: what comes first weighs more. A circle has no first.",
-        bad=_D + "hard a depends on b: d > 1\nhard b depends on a: d > 2\n",
-        good=_D + "hard a: d > 1\nhard b depends on a: d > 2\n",
+        bad=_D + "hard a depends on b: always (d > 1)\nhard b depends on a: always (d > 2)\n",
+        good=_D + "hard a: always (d > 1)\nhard b depends on a: always (d > 2)\n",
     ),
     Code(
         "G502",
@@ -23,8 +23,8 @@ CODES: tuple[Code, ...] = (
         message="`{name}` depends on `{on}`, which is no requirement",
         help="{help}",
         explanation="`depends on` names requirements of this spec.",
-        bad=_D + "hard a depends on z: d > 1\n",
-        good=_D + "hard z: d > 0\nhard a depends on z: d > 1\n",
+        bad=_D + "hard a depends on z: always (d > 1)\n",
+        good=_D + "hard z: always (d > 0)\nhard a depends on z: always (d > 1)\n",
     ),
     Code(
         "G503",
@@ -33,8 +33,8 @@ CODES: tuple[Code, ...] = (
         message="`{name}` depends on itself",
         help="remove `{name}` from its own `depends on`",
         explanation="A requirement cannot come before itself.",
-        bad=_D + "hard a depends on a: d > 1\n",
-        good=_D + "hard a: d > 1\n",
+        bad=_D + "hard a depends on a: always (d > 1)\n",
+        good=_D + "hard a: always (d > 1)\n",
     ),
     Code(
         "G504",
@@ -43,8 +43,8 @@ CODES: tuple[Code, ...] = (
         message="hard `{name}` depends on soft `{on}`",
         help="make `{on}` hard, or remove the dependency",
         explanation="What must hold cannot wait for what is only wanted.",
-        bad=_D + "soft b: d > 1\nhard a depends on b: d > 2\n",
-        good=_D + "hard b: d > 1\nhard a depends on b: d > 2\n",
+        bad=_D + "soft b: always (d > 1)\nhard a depends on b: always (d > 2)\n",
+        good=_D + "hard b: always (d > 1)\nhard a depends on b: always (d > 2)\n",
     ),
     Code(
         "G505",
@@ -54,8 +54,8 @@ CODES: tuple[Code, ...] = (
         help="write `depends on {hard}` in its header, so that it weighs less than what must hold",
         explanation="In the paper hard requirements come before soft ones. A soft one without a hard one before it "
         "weighs as much as what must hold.",
-        bad=_D + "hard a: d > 1\nsoft b: d > 2\n",
-        good=_D + "hard a: d > 1\nsoft b depends on a: d > 2\n",
+        bad=_D + "hard a: always (d > 1)\nsoft b: always (d > 2)\n",
+        good=_D + "hard a: always (d > 1)\nsoft b depends on a: always (d > 2)\n",
     ),
     Code(
         "G506",
@@ -77,10 +77,11 @@ CODES: tuple[Code, ...] = (
         explanation="Weights are the softmax of |Φ| - |ancestors|, so six levels of dependencies already differ by a "
         "factor of 148: the last ones hardly count in the reward of a demonstration.",
         bad=_D
-        + "hard a: d > 1\n"
+        + "hard a: always (d > 1)\n"
         + "".join(
-            f"soft {n} depends on {p}: d > {i}\n" for i, (p, n) in enumerate(zip("aefgh", "efghi", strict=True), 2)
+            f"soft {n} depends on {p}: always (d > {i})\n"
+            for i, (p, n) in enumerate(zip("aefgh", "efghi", strict=True), 2)
         ),
-        good=_D + "hard a: d > 1\nsoft b depends on a: d > 2\n",
+        good=_D + "hard a: always (d > 1)\nsoft b depends on a: always (d > 2)\n",
     ),
 )

@@ -123,7 +123,7 @@ CODES: tuple[Code, ...] = (
         "a formula on the past at the first sample",
         "warning",
         message="`{name}` looks only at the past of the first sample, which has none",
-        help="write `always (...)` or `eventually (...)` around it",
+        help="write `{meant}`, or `eventually (...)` if once is enough",
         explanation="A requirement is judged at the first sample of a trace. A formula with past operators only sees "
         "that one sample there.",
         bad=_P + "soft seen: once (p and not q)\n",
@@ -215,5 +215,18 @@ CODES: tuple[Code, ...] = (
         explanation="Only warnings can be ignored. Errors keep a spec from being compiled, so they are always shown.",
         bad=_X + "hard safe: always (x > 1)  # stlspec: ignore\n",
         good=_X + "hard safe: always (x > 1)\n",
+    ),
+    Code(
+        "L620",
+        "a requirement without an operator of time",
+        "warning",
+        message="`{name}` speaks of the first sample only: it has no operator of time",
+        help="write `{meant}`, or `eventually (...)` if once is enough",
+        explanation="A requirement is judged at the first sample of a trace, so `x < 3` says nothing of any later one: "
+        "`always (x < 3)` asks it of all samples, `eventually (x < 3)` of one. Where the first sample is meant, as for "
+        "the start of an episode, or the spec is for `stlspec monitor --reading every`, which judges every sample, "
+        "`# stlspec: ignore L620` says so.",
+        bad=_X + "hard low: x < 3\n",
+        good=_X + "hard low: always (x < 3)\n",
     ),
 )

@@ -42,8 +42,8 @@ CODES: tuple[Code, ...] = (
         message="`{name}` is defined by itself: {cycle}",
         help="break the circle; a formula cannot be recursive",
         explanation="Each `let` stands for the formula on its right, so it cannot use itself, even through others.",
-        bad="signal d\nlet p = q or d > 1\nlet q = p and d < 9\nhard safe: p\n",
-        good="signal d\nlet p = d > 1\nlet q = p and d < 9\nhard safe: q\n",
+        bad="signal d\nlet p = q or d > 1\nlet q = p and d < 9\nhard safe: always p\n",
+        good="signal d\nlet p = d > 1\nlet q = p and d < 9\nhard safe: always q\n",
     ),
     Code(
         "N105",
@@ -140,8 +140,8 @@ CODES: tuple[Code, ...] = (
         message="the argument `{name}` is named twice",
         help="rename one of the two",
         explanation="Each argument of a `let` has a name of its own. It hides whatever else has that name.",
-        bad="signal d\nlet near(x, x) = x < 1\nhard safe: d > 1\n",
-        good="signal d\nlet near(x, r) = x < r\nhard safe: not near(d, 1)\n",
+        bad="signal d\nlet near(x, x) = x < 1\nhard safe: always (d > 1)\n",
+        good="signal d\nlet near(x, r) = x < r\nhard safe: always not near(d, 1)\n",
     ),
     Code(
         "N115",
@@ -152,7 +152,7 @@ CODES: tuple[Code, ...] = (
         explanation="A template that uses another one twice, which uses a third one twice, and so on, doubles its size "
         "at every step. What is used twice with the same arguments counts once.",
         bad="# let t9(x) = t8(x + 1) and t8(x + 2)      and so on, 60 times",
-        good="signal d\nlet near(x, r) = x < r\nhard safe: not near(d, 1)\n",
+        good="signal d\nlet near(x, r) = x < r\nhard safe: always not near(d, 1)\n",
         kind="shown",
     ),
     Code(

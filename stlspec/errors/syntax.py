@@ -79,7 +79,7 @@ CODES: tuple[Code, ...] = (
         explanation="More than 200 levels of brackets and operators inside one another are refused. Chains of "
         "equal operators are not nested, and `let`s may build on one another as far as you like.",
         bad=_D + "hard safe: " + "(" * 201 + "d > 1" + ")" * 201 + "\n",
-        good=_D + "hard safe: ((d > 1))\n",
+        good=_D + "hard safe: always ((d > 1))\n",
     ),
     Code(
         "S008",

@@ -25,8 +25,8 @@ CODES: tuple[Code, ...] = (
         label="true or false, not a number",
         help="{help}",
         explanation="Arithmetic and comparisons join numbers. Whether a formula holds is no number.",
-        bad=_D + "hard safe: (d > 1) + 2 > 3\n",
-        good=_D + "hard safe: d + 2 > 3\n",
+        bad=_D + "hard safe: always ((d > 1) + 2 > 3)\n",
+        good=_D + "hard safe: always (d + 2 > 3)\n",
     ),
     Code(
         "T203",

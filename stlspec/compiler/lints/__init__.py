@@ -6,6 +6,7 @@ in the order in which they run.
 
 from collections.abc import Callable
 
+from stlspec.compiler.lints.first_sample import check_first_sample
 from stlspec.compiler.lints.predicates import check_predicates
 from stlspec.compiler.lints.relations import check_relations
 from stlspec.compiler.lints.shapes import check_shapes
@@ -22,6 +23,7 @@ PASSES: tuple[Callable[[Subject], list[Diagnostic]], ...] = (
     check_predicates,
     check_relations,
     check_shapes,
+    check_first_sample,
     check_spelling,
     check_unused,
 )

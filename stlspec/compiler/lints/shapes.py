@@ -1,6 +1,6 @@
-"""Formulas whose shape says something else than it seems to: not step-wise, past-only, collapsing, `next` at the end.
+"""Formulas whose shape says something else than it seems to: not step-wise, collapsing, `next` at the end.
 
-In: a `Subject`. Out: L608, L610, L611 and L612.
+In: a `Subject`. Out: L608, L610 and L612.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ _MANY_NAMES = 5
 
 def check_shapes(subject: Subject) -> list[Diagnostic]:
     """Judge the shape of every formula."""
-    found = [*_not_stepwise(subject), *_past_only(subject)]
+    found = _not_stepwise(subject)
     for formula in subject.formulas:
         inside: set[int] = set()
         for node in reversed(list(post_order(formula))):
@@ -78,21 +78,6 @@ def _is_stepwise(nodes: Sequence[Node], present: Sequence[bool], root: int) -> b
         else:
             return False
     return True
-
-
-def _past_only(subject: Subject) -> list[Diagnostic]:
-    """Report requirements with past operators and nothing that looks ahead."""
-    uses: list[tuple[bool, bool]] = []
-    for node in subject.sketch.nodes:
-        below = [uses[child] for child in node.children]
-        past, future = node.op in PAST, node.op in FUTURE
-        uses.append((past or any(p for p, _ in below), future or any(f for _, f in below)))
-    found = []
-    for name, root in subject.sketch.roots.items():
-        if uses[root] == (True, False):
-            statement = subject.model.declared.requirements[name]
-            found.append(subject.warn("L611", statement.formula.span, name=name))
-    return found
 
 
 def _next_at_the_end(subject: Subject, node: Prefix) -> list[Diagnostic]:

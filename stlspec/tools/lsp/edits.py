@@ -68,9 +68,10 @@ def actions(reviewed: Reviewed, start: int, end: int) -> tuple[Action, ...]:
         if found.source is source and found.span is not None and _touches(source, found.span, first, last)
     ]
     fixes = [
-        Action(fix.title, found, source, fix.edits, likely=i == 0)
+        # An editor takes what is likely without asking, which between several ways out is not its choice.
+        Action(fix.title, found, source, fix.edits, likely=len(found.fixes) == 1)
         for found, _ in here
-        for i, fix in enumerate(found.fixes)
+        for fix in found.fixes
     ]
     hiding = [_ignored(reviewed, found, source, span) for found, span in here]
     return (*fixes, *(action for action in hiding if action is not None))

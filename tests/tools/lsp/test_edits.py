@@ -76,6 +76,14 @@ def test_the_likeliest_way_out_mends_the_text(text, after):
     assert found.title == found.found.help
 
 
+def test_between_two_ways_out_an_editor_does_not_choose():
+    text = "signal x\nhard a: x > 0\n"
+    known = reviewed(text)
+    found = [action for action in actions(known, 0, len(text)) if action.found.code == "L620"]
+    assert [action.title for action in found[:2]] == ["write `always (...)`", "write `eventually (...)`"]
+    assert not any(action.likely for action in found)
+
+
 def test_only_what_is_reported_on_the_lines_asked_for_is_offered():
     text = "signal x\nsignal y\nhard a: always[5, 2] (x > 0)\n"
     assert actions(reviewed(text), 0, text.index("hard") - 1) == ()
