@@ -109,13 +109,15 @@ class Sketch:
     """The formulas of a model as nodes of one DAG, whether or not its params have values.
 
     An open param is a `signal` node: what holds for all its values holds for any. made: the node of each expression
-    outside templates, by its `id`. roots: by requirement. exact: no interval is left open by a param.
+    outside templates, by its `id`. roots: by requirement. open: the nodes in which an interval is left open by a
+    param; undecided: those whose own interval is.
     """
 
     nodes: tuple[Node, ...]
     made: Mapping[int, int]
     roots: Mapping[str, int]
-    exact: bool
+    open: frozenset[int]
+    undecided: frozenset[int]
 
 
 def sketch(model: Model) -> Sketch:
@@ -126,7 +128,12 @@ def sketch(model: Model) -> Sketch:
         if not let.arguments:
             lowering.names[name] = lowering.expression(let.body)
     roots = {name: lowering.expression(r.formula) for name, r in model.declared.requirements.items()}
-    return Sketch(tuple(lowering.builder.nodes), lowering.made, roots, not lowering.is_open)
+    nodes, undecided = tuple(lowering.builder.nodes), frozenset(lowering.undecided)
+    reached = set(undecided)
+    for index, node in enumerate(nodes):
+        if not reached.isdisjoint(node.children):
+            reached.add(index)
+    return Sketch(nodes, lowering.made, roots, frozenset(reached), undecided)
 
 
 class _Lowering:
@@ -143,8 +150,8 @@ class _Lowering:
         self.made: dict[int, int] = {}
         self.at: Model | Instance = model
         self.arguments: Mapping[str, int] = {}
-        self.is_open = False
-        """Whether the bounds of some interval have no value."""
+        self.undecided: set[int] = set()
+        """The nodes whose bounds have no value."""
         self._instances: dict[int, int] = {}
 
     def expression(self, root: Expression) -> int:
@@ -238,9 +245,14 @@ class _Lowering:
     def _interval(self, operator: Operator) -> Interval:
         if operator.interval is None:
             return _UNBOUNDED
-        ticks = self.at.intervals.get(id(operator.interval))
-        self.is_open |= ticks is None
-        return _UNKNOWN if ticks is None else ticks
+        return self.at.intervals.get(id(operator.interval), _UNKNOWN)
+
+    def _timed(self, word: str, operands: Sequence[int], interval: Interval) -> int:
+        """Add an operator with an interval."""
+        made = self.builder.add(word, operands, interval=interval)
+        if interval is _UNKNOWN:
+            self.undecided.add(made)
+        return made
 
     def _not(self, operand: int) -> int:
         below = self.builder.nodes[operand]
@@ -256,7 +268,7 @@ class _Lowering:
                 return self.builder.add(operator.word, [operand])
             case "wnext" | "wprev":
                 return self._not(self.builder.add(operator.word[1:], [self._not(operand)]))
-        return self.builder.add(operator.word, [operand], interval=self._interval(operator))
+        return self._timed(operator.word, [operand], self._interval(operator))
 
     def _infix(self, node: Infix, below: list[int]) -> int:
         word = node.operators[0].word
@@ -289,12 +301,12 @@ class _Lowering:
                 same = add("and", [add("or", [self._not(left), right]), add("or", [self._not(right), left])])
                 return same if word == "iff" else self._not(same)
             case "until" | "since":
-                return add(word, [left, right], interval=self._interval(operator))
+                return self._timed(word, [left, right], self._interval(operator))
             case "release":
                 interval = self._interval(operator)
-                return self._not(add("until", [self._not(left), self._not(right)], interval=interval))
+                return self._not(self._timed("until", [self._not(left), self._not(right)], interval))
             case "unless":
-                low, high = self._interval(operator)
-                until = add("until", [left, right], interval=(low, high))
-                return add("or", [until, add("always", [left], interval=(0, high))])
+                interval = self._interval(operator)
+                until = self._timed("until", [left, right], interval)
+                return add("or", [until, add("always", [left], interval=(0, interval[1]))])
         return self._real(word, [left, right])

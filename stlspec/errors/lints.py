@@ -89,10 +89,13 @@ CODES: tuple[Code, ...] = (
         "a hard requirement that is not step-wise",
         "warning",
         message="hard {names} cannot be judged step by step",
-        help="for `learn`, state it as `always (...)` of the present and a bounded past, or make it soft",
+        help="for `learn`, state it as `always (...)` of the present and the past, bound what it waits for, or make it "
+        "soft",
         explanation="`learn` keeps off steps that violate a hard requirement. It can see them where the requirement is "
-        "`always` of a formula over the present sample and a bounded past; what is violated only by what comes later, "
-        "such as `eventually p`, it learns from the end of an episode. Scores and monitors are not concerned.",
+        "`always` of a formula over the present and the past, or waits for no longer than a bound. What is violated "
+        "only by never coming, such as `eventually p` or `p until q`, it learns from the end of an episode; it refuses "
+        "the past of a future, such as `once eventually p`, and a rate of a rate or beside `now` (D868). Scores and "
+        "monitors are not concerned.",
         bad=_X + "hard reach: eventually (x > 1)\n",
         good=_X + "hard safe: always (x > 1)\n",
     ),

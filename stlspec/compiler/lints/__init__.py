@@ -11,6 +11,7 @@ from stlspec.compiler.lints.predicates import check_predicates
 from stlspec.compiler.lints.relations import check_relations
 from stlspec.compiler.lints.shapes import check_shapes
 from stlspec.compiler.lints.spelled import check_spelling
+from stlspec.compiler.lints.stepwise import check_stepwise
 from stlspec.compiler.lints.subject import Subject, make_subject
 from stlspec.compiler.lints.unused import check_unused
 from stlspec.compiler.model import Model
@@ -22,6 +23,7 @@ __all__ = ["PASSES", "lint"]
 PASSES: tuple[Callable[[Subject], list[Diagnostic]], ...] = (
     check_predicates,
     check_relations,
+    check_stepwise,
     check_shapes,
     check_first_sample,
     check_spelling,

@@ -1,7 +1,7 @@
 """Requirements beside each other: contradictions, and what another one contains already.
 
 In: a `Subject`. Out: L605 and L606. Both are decided by rules that are sound and not complete: a pair of which
-nothing is said may still contradict.
+nothing is said may still contradict. Nothing is said of a requirement with a bound that has no value yet.
 """
 
 from collections.abc import Mapping
@@ -21,9 +21,10 @@ _MANY = 100
 def check_relations(subject: Subject) -> list[Diagnostic]:
     """Compare every requirement with every other one; one warning for each pair, one for each that is contained."""
     requirements = subject.model.declared.requirements
-    if not subject.sketch.exact or len(requirements) > _MANY:
+    if len(requirements) > _MANY:
         return []
-    roots = {name: root for name, root in subject.sketch.roots.items() if not _is_decided(subject, root)}
+    known = {name: root for name, root in subject.sketch.roots.items() if root not in subject.sketch.open}
+    roots = {name: root for name, root in known.items() if not _is_decided(subject, root)}
     above = _above(requirements)
     rules = Entailment(subject.sketch.nodes, subject.ranges)
     found: list[Diagnostic] = []

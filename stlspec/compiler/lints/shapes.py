@@ -1,23 +1,20 @@
-"""Formulas whose shape says something else than it seems to: not step-wise, collapsing, `next` at the end.
+"""Formulas whose shape says something else than it seems to: collapsing, `next` at the end.
 
-In: a `Subject`. Out: L608, L610 and L612.
+In: a `Subject`. Out: L610 and L612.
 """
 
-from collections.abc import Sequence
-
-from stlspec.compiler.ir import FUTURE, PAST, Node
+from stlspec.compiler.ir import FUTURE, PAST
 from stlspec.compiler.lints.subject import Subject
-from stlspec.errors import Diagnostic, Edit, Label, diagnostic
+from stlspec.errors import Diagnostic, Edit, diagnostic
 from stlspec.lang.nodes import Expression, Group, Infix, Operator, Prefix, post_order
 
 _UNBOUNDED = frozenset({"always", "eventually", "historically", "once"})
 _AT_THE_END = {"always": "eventually", "eventually": "always"}
-_MANY_NAMES = 5
 
 
 def check_shapes(subject: Subject) -> list[Diagnostic]:
     """Judge the shape of every formula."""
-    found = _not_stepwise(subject)
+    found: list[Diagnostic] = []
     for formula in subject.formulas:
         inside: set[int] = set()
         for node in reversed(list(post_order(formula))):
@@ -25,59 +22,6 @@ def check_shapes(subject: Subject) -> list[Diagnostic]:
                 found += _next_at_the_end(subject, node)
                 found += _collapsing(subject, node, inside)
     return found
-
-
-def _not_stepwise(subject: Subject) -> list[Diagnostic]:
-    """Report the hard requirements that no single step can be seen to violate, all in one."""
-    if not subject.sketch.exact:
-        return []
-    nodes = subject.sketch.nodes
-    present = _of_present_and_bounded_past(nodes)
-    requirements = subject.model.declared.requirements
-    names = [
-        name
-        for name, root in subject.sketch.roots.items()
-        if requirements[name].strength == "hard" and not _is_stepwise(nodes, present, root)
-    ]
-    if not names:
-        return []
-    shown = ", ".join(f"`{n}`" for n in names[:_MANY_NAMES])
-    if names[_MANY_NAMES:]:
-        shown += f" and {len(names) - _MANY_NAMES} more"
-    source = subject.syntax.source
-    labels = tuple(Label(requirements[n].name.span, "nor can this", source) for n in names[1:_MANY_NAMES])
-    span = requirements[names[0]].name.span
-    return [diagnostic("L608", source=source, span=span, labels=labels, names=shown)]
-
-
-def _of_present_and_bounded_past(nodes: Sequence[Node]) -> list[bool]:
-    found: list[bool] = []
-    for node in nodes:
-        bounded = node.op not in FUTURE
-        if node.op in PAST and node.interval is not None:
-            bounded = node.interval[1] is not None
-        found.append(bounded and all(found[child] for child in node.children))
-    return found
-
-
-def _is_stepwise(nodes: Sequence[Node], present: Sequence[bool], root: int) -> bool:
-    """Tell whether a formula is `always` of present and bounded past, or several of these joined by `and`."""
-    pending = [(root, False)]
-    while pending:
-        index, negated = pending.pop()
-        node = nodes[index]
-        if present[index]:
-            continue
-        if node.op == "not":
-            pending.append((node.children[0], not negated))
-        elif node.op == ("or" if negated else "and"):
-            pending += [(child, negated) for child in node.children]
-        elif node.op == ("eventually" if negated else "always"):
-            # `always` of `always` is still seen at one step.
-            pending.append((node.children[0], negated))
-        else:
-            return False
-    return True
 
 
 def _next_at_the_end(subject: Subject, node: Prefix) -> list[Diagnostic]:

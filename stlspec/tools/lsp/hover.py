@@ -220,6 +220,6 @@ def _horizon(reviewed: Reviewed, model: Model, formula: Expression) -> str:
     ahead = horizons(drawn.nodes, model.declared.time)[node]
     if ahead == 0:
         return "Horizon: 0, the sample itself."
-    if not drawn.exact and ahead is None:
+    if node in drawn.open and ahead is None:
         return "Horizon: to the end, or set by a param without a value."
     return f"Horizon: {_time(ahead, model.declared.time) if ahead is not None else 'to the end of the trace'}."

@@ -94,3 +94,10 @@ def test_no_trace_contradicts_what_is_said():
                 wrong = truth[one] and truth[other] if claim.code == "L605" else truth[other] and not truth[one]
                 assert not wrong, f"{claim.message}\n{text}"
     assert said > 50
+
+
+def test_a_param_without_a_value_silences_only_what_it_stands_in():
+    text = "param T\nsoft late: eventually[0, T] q\nhard a: always (x > 5)\nhard b: always (x > 3)\n"
+    assert codes(text) == ["L606"]
+    assert codes("param T\nhard a: always[1, T] p\nhard b: always[1, inf] p\n") == []
+    assert codes("param T\nparam S\nhard a: eventually[0, T] p\nhard b: eventually[0, S] p\n") == []
