@@ -6,7 +6,6 @@ environment computes it from the states: the demonstration's own one first. What
 replaced by what can be computed.
 """
 
-import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,6 +19,8 @@ from stlspec.demos import Demonstration
 from stlspec.envs.catalogue import environment_of
 from stlspec.envs.model import Environment, derive_actions
 from stlspec.errors import DataError, Diagnostic, InputError, diagnostic
+from stlspec.lang.spelling import closest_column, split_unit
+from stlspec.lang.units import dimension, respelt
 from stlspec.readers.model import Array, Recording, column_of, plain
 from stlspec.sampling import OnNan, check_on_nan, in_unit_of, resampled, settled
 
@@ -211,8 +212,10 @@ def missing_signal(signal: Signal, recording: Recording, worlds: Sequence[Enviro
     key = _key(signal)
     offered = [name for world in worlds for name in world.signal_names]
     held = (*recording.columns, *recording.others)
-    close = difflib.get_close_matches(key, [*held, *offered], 1)
-    parts = [f"did you mean '{close[0]}'? write `from \"{close[0]}\"` in its declaration"] if close else []
+    close = closest_column(key, [*held, *offered])
+    parts = [f"did you mean '{close}'? write `from \"{close}\"` in its declaration"] if close else []
+    if close and (other := _other_unit(signal, close)):
+        parts.append(other)
     if key.startswith("info."):
         parts.append(f"a recording has no info; record a column named '{key}'")
     parts.append("the data has " + (_some(held) if held else "no columns"))
@@ -223,6 +226,18 @@ def missing_signal(signal: Signal, recording: Recording, worlds: Sequence[Enviro
     else:
         parts.append("name the environment that computes it from the states: --env ID")
     return diagnostic("D804", file=file, signal=signal.name, help="; ".join(parts))
+
+
+def _other_unit(signal: Signal, column: str) -> str | None:
+    """Say that the unit in the name of a column is not the one that its signal is declared in."""
+    written = split_unit(column)[1]
+    if written is None or signal.unit is None or _unit(written) == _unit(signal.unit):
+        return None
+    return f"its name says {written}, and `{signal.name}` is declared in {signal.unit}"
+
+
+def _unit(text: str) -> object:
+    return dimension(respelt(text) or text) or text
 
 
 def _some(names: Iterable[str]) -> str:

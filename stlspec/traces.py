@@ -5,7 +5,6 @@ In: the columns of one recording (or of a batch of recordings) and the spec's de
 rounded here only: from then on every window is found by integer arithmetic, so every engine finds the same.
 """
 
-import difflib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -19,6 +18,7 @@ from stlspec.columns import first_true, snapped, to_column, unmasked
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import counted, number_text
 from stlspec.errors import DataError, diagnostic
+from stlspec.lang.spelling import closest_column
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -191,10 +191,10 @@ def _error(code: str, file: str | None, **fields: Any) -> DataError:
 
 
 def _missing(name: str, signals: Mapping[str, ArrayLike], file: str | None) -> DataError:
-    close = difflib.get_close_matches(name, [str(s) for s in signals], n=1)
+    close = closest_column(name, [str(s) for s in signals])
     known = ", ".join(f"'{s}'" for s in list(signals)[:5])
-    hint = f"did you mean '{close[0]}'?" if close else f"the data has {known or 'no signals'}"
-    return _error("D804", file, signal=name, help=f'{hint} (`from "{close[0]}"` reads it)' if close else hint)
+    hint = f"did you mean '{close}'?" if close else f"the data has {known or 'no signals'}"
+    return _error("D804", file, signal=name, help=f'{hint} (`from "{close}"` reads it)' if close else hint)
 
 
 def _common_shape(

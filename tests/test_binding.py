@@ -178,6 +178,22 @@ def test_a_missing_signal_is_refused_with_what_there_is(demonstration, environme
     assert all(each in found.help for each in words)
 
 
+@pytest.mark.parametrize(
+    ("unit", "column", "said"),
+    [
+        ("m/s", "vz [ft/s]", "its name says ft/s, and `vz` is declared in m/s"),
+        ("m/s**2", "vz [m/s^2]", None),
+        ("percent", "vz [%]", None),
+        ("m", "VZ", None),
+        (None, "vz [m]", None),
+    ],
+)
+def test_a_unit_in_the_name_of_a_column_is_compared_with_the_declared_one(unit, column, said):
+    (found,) = refused(bind, spec(Signal("vz", unit=unit)), make_demonstration("d", {column: [1]}))
+    assert f"did you mean '{column}'" in found.help
+    assert said in found.help if said else "declared in" not in found.help
+
+
 def test_all_missing_signals_are_named():
     problems = refused(bind, spec("x", Signal("v", source="info.speed")), make_demonstration("d", {"z": [1]}))
     assert [d.code for d in problems] == ["D804", "D804"]

@@ -38,7 +38,11 @@ def check(
     ] = None,
     demos: Annotated[
         list[str] | None,
-        typer.Option("--demos", metavar="PATH...", help="warn where these demonstrations are shorter than a horizon"),
+        typer.Option(
+            "--demos",
+            metavar="PATH...",
+            help="also say which signals these demonstrations lack, and where they are shorter than a horizon",
+        ),
     ] = None,
     output: Annotated[CheckFormat, typer.Option("--format", help="for a person, or for a program")] = CheckFormat.TEXT,
 ) -> None:

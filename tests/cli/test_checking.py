@@ -65,6 +65,14 @@ def test_demos_take_every_path_up_to_the_next_option(spec, tmp_path, capsys):
     assert "N106" in capsys.readouterr().out
 
 
+def test_a_signal_that_demonstrations_lack_is_an_error_beside_the_others(spec, tmp_path, capsys):
+    spec.write_text("signal alt\nhard a: always (alt > 0)\nhard b: alt > 1\n")
+    (tmp_path / "a.csv").write_text("altitude\n1\n2\n")
+    assert run(["check", str(spec), "--demos", str(tmp_path / "a.csv"), "--format", "json"]) == 1
+    codes = [found["code"] for found in json.loads(capsys.readouterr().out)["diagnostics"]]
+    assert sorted(codes) == ["D804", "L620"]
+
+
 @pytest.mark.parametrize("output", ["text", "json", "sarif", "github"])
 def test_no_format_loads_anything_heavy(spec, output):
     code = (

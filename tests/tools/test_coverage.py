@@ -35,3 +35,18 @@ def test_a_demonstration_that_cannot_be_read_is_refused(tmp_path):
     (tmp_path / "d.csv").write_text("x\n")
     with pytest.raises(DataError):
         messages("signal x\nhard a: always[0, 2] (x > 0)\n", [tmp_path / "d.csv"])
+
+
+def test_signals_that_a_demonstration_lacks_are_said_as_score_says_them(tmp_path):
+    (tmp_path / "d.csv").write_text("altitude\n1\n2\n")
+    (tmp_path / "good.csv").write_text("alt,x\n1,1\n2,2\n")
+    source = SourceText.of("s", "signal alt\nsignal x\nhard a: always[0, 5] (alt > 0 and x < 3)\n")
+    demos = [str(tmp_path / "d.csv"), str(tmp_path / "good.csv")]
+    found = uncovered(source, compile_source(source), check_source(source).model, demos)
+    assert [(d.code, d.severity) for d in found] == [("D804", "error"), ("D804", "error"), ("L614", "warning")]
+    assert found[0].file == demos[0] and "did you mean 'altitude'" in found[0].help
+
+
+def test_states_wait_for_the_environment_that_score_is_given(tmp_path):
+    (tmp_path / "d.json").write_text('{"states": [[0, 0], [0, 1]]}')
+    assert messages("signal d_goal\nhard a: always (d_goal > 0)\n", [tmp_path / "d.json"]) == []

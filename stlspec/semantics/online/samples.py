@@ -4,7 +4,6 @@ In: what the caller gave. Out: floats, Booleans, ticks, or the same diagnostics 
 here changes the state of a monitor, so that a refused sample leaves no trace.
 """
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, NoReturn
@@ -15,6 +14,7 @@ from stlspec.columns import snapped
 from stlspec.compiler.bundle import Signal, TimeBase
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
+from stlspec.lang.spelling import closest_column
 from stlspec.semantics.layout import own_time
 from stlspec.semantics.online.saving import LARGEST, Remembering, State, Unsound, number, numbers, optional, whole
 
@@ -205,7 +205,7 @@ def missing(names: Mapping[str, Any] | Any, wanted: list[str]) -> NoReturn:
     if not isinstance(names, Mapping):
         refuse("D813", what="a sample", problem=f"is a {type(names).__name__}, not a mapping from names to values")
     name = next((w for w in wanted if w not in names), wanted[0])
-    close = difflib.get_close_matches(name, [str(n) for n in names], n=1)
+    close = closest_column(name, [str(n) for n in names])
     known = ", ".join(f"'{n}'" for n in list(names)[:5])
-    hint = f"did you mean '{close[0]}'?" if close else f"the sample has {known or 'no signals'}"
+    hint = f"did you mean '{close}'?" if close else f"the sample has {known or 'no signals'}"
     refuse("D804", signal=name, help=hint)
