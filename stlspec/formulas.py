@@ -4,8 +4,9 @@ In: the text of a formula and demonstrations. Out: a result for each. Every name
 signal, Boolean where the data says so, and the formula as the only requirement: the compiler does the rest.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from stlspec.compiler.checks import check
 from stlspec.compiler.compiling import compile_syntax
 from stlspec.compiler.inference import FUNCTIONS, NOW
 from stlspec.demos import Demonstration
-from stlspec.errors import SpecError, UsageError, diagnostic
+from stlspec.errors import Diagnostic, SpecError, StlspecError, UsageError, diagnostic
 from stlspec.lang.nodes import Name, ParamStatement, RequirementStatement, SignalStatement, Statement, names_in
 from stlspec.lang.parse import Syntax, parse, parse_formula
 from stlspec.sampling import OnNan
@@ -25,6 +26,18 @@ from stlspec.source import SourceText, Span
 
 _NAME = "formula"
 _NOWHERE = Span(0, 0)
+_LEAVE_OUT = "leave the unit out: signals have none without a spec"
+_IN_FORMULA = (
+    (r"declare `time (.+?)`", r"give `--time '\1'`"),
+    (r"write `time (.+?)`", r"give `--time '\1'`"),
+    (r"declare the sampling period: `time (.+?)`", r"give the sampling period: `--time '\1'`"),
+    (r'write `from "([A-Za-z_]\w*)"` in its declaration', r"write `\1`"),
+    (r'write `from "(.*?)"` in its declaration', "a formula cannot name it: write a spec that reads it by `from`"),
+    (r"declare the unit of both sides|convert one side by a factor with a unit", _LEAVE_OUT),
+    (r"declare a signal with this unit, or remove it", _LEAVE_OUT),
+    (r"use numbers, params and `inf` only", "use numbers and `inf`, or give the name a value with `-p NAME=VALUE`"),
+)
+"""What help says of declarations, which a formula alone has none of, and what there is in their place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +84,28 @@ def evaluate_on(
     Raises: SpecError: the formula has errors. DataError: a signal is missing or cannot be used.
     """
     results = []
-    for demonstration in demonstrations:
-        columns = demonstration.recording.columns
-        booleans = frozenset(n for n, values in columns.items() if np.asarray(values).dtype == np.bool_)
-        bundle = compile_formula(text, booleans, time, params)
-        bound = bind(bundle, demonstration, None, on_nan)
-        found = evaluate_ending(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
-        results.append(FormulaResult(bound.name, found[_NAME]))
+    try:
+        for demonstration in demonstrations:
+            columns = demonstration.recording.columns
+            booleans = frozenset(n for n, values in columns.items() if np.asarray(values).dtype == np.bool_)
+            bundle = compile_formula(text, booleans, time, params)
+            bound = bind(bundle, demonstration, None, on_nan)
+            found = evaluate_ending(bundle, bound.signals, bound.time, end=end, at=at, file=bound.name)
+            results.append(FormulaResult(bound.name, found[_NAME]))
+    except StlspecError as error:
+        raise type(error)(_without_declarations(error.diagnostics)) from None
     return tuple(results)
+
+
+def _without_declarations(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Say ways out in the words of the command that evaluates one formula."""
+    found = []
+    for problem in problems:
+        way = problem.help
+        for pattern, words in _IN_FORMULA:
+            way = re.sub(pattern, words, way)
+        found.append(replace(problem, help=way))
+    return found
 
 
 def _words(text: str) -> list[str]:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stlspec.columns import first_true, snapped, to_column, unmasked
 from stlspec.compiler.bundle import Signal, TimeBase
+from stlspec.compiler.notation import off_period
 from stlspec.compiler.printing import counted, number_text
 from stlspec.errors import DataError, diagnostic
 from stlspec.lang.spelling import closest_column
@@ -304,7 +305,8 @@ def _on_period(base: TimeBase, stamps: Floats, ticks: Floats, file: str | None, 
         at = int(wrong.argmax())
         length = f"{number_text(period / base.ticks_per_unit)} {base.unit}"
         shown = number_text(stamps[at])
-        raise _error("D811", file, sample=at + shift, time=shown, period=length, unit=base.unit)
+        way = off_period(base, float(np.diff(stamps).min()))
+        raise _error("D811", file, sample=at + shift, time=shown, period=length, unit=base.unit, help=way)
     return whole.astype(np.int64) * period
 
 

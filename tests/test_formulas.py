@@ -42,3 +42,24 @@ def test_a_wrong_formula_is_a_spec_error(text: str) -> None:
 def test_a_param_that_is_no_number_is_refused(name: str, value: str) -> None:
     with pytest.raises(InputError, match="N108"):
         compile_formula("x > c", frozenset(), "step", {name: value})
+
+
+@pytest.mark.parametrize(
+    ("formula", "time", "said"),
+    [
+        ("always[0, 3 s] (x < 3)", "step", "give `--time 's'`"),
+        ("x < 3 m", "step", "leave the unit out"),
+        ("rate(x) < 3 m/s", "s", "leave the unit out"),
+        ("always (X < 3)", "s", "did you mean 'x'? write `x`"),
+        ("always (dist < 3)", "s", "a formula cannot name it"),
+        ("always[0, T] (x < 3)", "step", "-p NAME=VALUE"),
+        ("always (x < 3)", "100 ms", "give `--time '0.1 s'`"),
+        ("alway[0, 3] (x < 3)", "step", "write `always`"),
+    ],
+)
+def test_ways_out_are_those_of_the_command_line(tmp_path, formula, time, said) -> None:
+    (tmp_path / "d.csv").write_text("time,x,dist [m]\n0,1,1\n0.1,2,2\n")
+    with pytest.raises((SpecError, InputError)) as error:
+        evaluate_on(formula, load_demonstrations([tmp_path / "d.csv"]), time)
+    (found,) = error.value.diagnostics
+    assert said in found.help and "declar" not in found.help

@@ -264,3 +264,19 @@ def test_a_masked_value_is_no_sample(values):
 def test_a_masked_boolean_and_a_masked_stamp_are_no_samples():
     refused("D801", STEP, [Signal("b", "bool")], {"b": np.ma.array([True, False], mask=[0, 1])})
     refused("D812", SECONDS, [X], {"x": [1, 2]}, np.ma.array([0, 1], mask=[0, 1]))
+
+
+@pytest.mark.parametrize(
+    ("period", "unit", "size", "stamps", "said"),
+    [
+        (10**8, "ms", 10**6, [0, 0.1, 0.2], "look like seconds: write `time 0.1 s`"),
+        (6 * 10**9, "s", 10**9, [0, 0.1, 0.3], "look like minutes: write `time 0.1 min`"),
+        (10**8, "ms", 10**6, [0, 130, 230], "stamps are read in ms"),
+        (10**8, "ms", 10**6, [0, 0.13, 0.26], "stamps are read in ms"),
+    ],
+)
+def test_stamps_of_another_unit_are_told_theirs(period, unit, size, stamps, said):
+    with pytest.raises(DataError) as error:
+        make_trace(TimeBase("period", unit, size, period), [X], {"x": [0] * len(stamps)}, stamps)
+    (found,) = error.value.diagnostics
+    assert found.code == "D811" and said in found.help

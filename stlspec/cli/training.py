@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -194,7 +195,8 @@ def _counts(bins: str | None) -> tuple[int, ...] | None:
     parts = [part.strip() for part in bins.split(",")]
     if not all(part.isascii() and part.isdigit() and len(part) < 8 for part in parts):
         allowed = "whole numbers from 1, separated by commas, as in 50,50"
-        raise UsageError([diagnostic("D871", option="--bins", value=bins[:40], allowed=allowed)])
+        found = diagnostic("D871", option="--bins", value=bins[:40], allowed=allowed)
+        raise UsageError([replace(found, help="write --bins 50,50, or leave it out where states have numbers")])
     return tuple(map(int, parts))
 
 

@@ -40,8 +40,11 @@ def short(text: str) -> str:
     return flat if len(flat) <= 30 else flat[:29] + "…"
 
 
-def for_unknown(name: str, span: Span, known: Iterable[str]) -> Advice:
-    """Say what to do about a name that nothing declares; `known` are those that may have been meant."""
+def for_unknown(name: str, span: Span, known: Iterable[str], *, constant: bool = False) -> Advice:
+    """Say what to do about a name that nothing declares; `known` are those that may have been meant.
+
+    constant: the name stands where no signal may, in the bound of a window or of a range.
+    """
     foreign = _FOREIGN.get(name.casefold())
     if foreign is not None:
         return f"write `{foreign}`", (Edit(span, foreign),)
@@ -50,6 +53,8 @@ def for_unknown(name: str, span: Span, known: Iterable[str]) -> Advice:
         return f"did you mean `{close}`?", (Edit(span, close),)
     if name in OPERATOR_WORDS:
         return f"`{name}` is an operator: it needs an operand", ()
+    if constant:
+        return f"declare it: `param {name} = ...` or `let {name} = ...`", ()
     return f"declare it: `signal {name}`, `param {name} = ...` or `let {name} = ...`", ()
 
 

@@ -78,6 +78,7 @@ class Inference:
         self.intervals: dict[int, tuple[int, int | None]] = {}
         self.quantities = Quantities(self._report, lambda span: self.source.slice(span))
         self._said: dict[tuple[str, str], int] = {}
+        self._in_constant = False
 
     def enter(self, file: Syntax) -> None:
         """Go on with expressions of another file: names are those that it sees, places are in its text."""
@@ -177,7 +178,8 @@ class Inference:
             way = "declare it in this file or use the file that does; what the using file declares is not seen here"
             return self._report("N101", node.span, (self.declared.place(name),), name=name, help=way)
         few = len(self.problems) < MANY_PROBLEMS
-        way, edits = for_unknown(name, node.span, [*self.known(), "now", "true", "false", "inf"] if few else ())
+        known = [*self.known(), "now", "true", "false", "inf"] if few else ()
+        way, edits = for_unknown(name, node.span, known, constant=self._in_constant)
         if is_unit_word(name):
             first = first_of_unit(self.source.text[max(0, node.span.start - LONGEST_UNIT) : node.span.start])
             if first is not None and first not in self.scope and is_unit_word(first):
@@ -359,7 +361,9 @@ class Inference:
             self.typings[id(windows)] = FORMULA
             self._need_real(windows, what)
             return BROKEN
+        self._in_constant = True  # a window inside was refused above, so this does not nest
         typing = self._walk(node)
+        self._in_constant = False
         if not self._need_real(node, what):
             return BROKEN
         if typing.constant:

@@ -10,11 +10,39 @@ from collections.abc import Mapping, Sequence
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.ir import COMPARISONS, REAL, Interval, Node
 from stlspec.compiler.printing import LONGEST, expression_text, number_text
+from stlspec.lang.units import NANOSECONDS
 
+_LIKE = 0.01
+_UNITS = {
+    unit: (NANOSECONDS[unit], word)
+    for unit, word in {
+        "s": "seconds",
+        "ms": "milliseconds",
+        "us": "microseconds",
+        "ns": "nanoseconds",
+        "min": "minutes",
+        "h": "hours",
+    }.items()
+}
 _BINARY, _PREFIX, _COMPARISON, _NOT, _ATOM = range(5)
 _UNBOUNDED: Interval = (0, None)
 _Shape = tuple[str, tuple[int, ...], Interval | None]
 """An operator of the language, its operands, its interval."""
+
+
+def off_period(time: TimeBase, spacing: float) -> str:
+    """Return the way out of stamps that do not fit the period: the unit in which they would, if there is one.
+
+    Not in the paper: data.
+
+    Args:    time: with a period. spacing: the shortest time between two stamps, as they are written.
+    """
+    unit, period = time.unit, time.period or 1
+    for other, (length, word) in _UNITS.items():
+        if other != unit and abs(spacing * length - period) <= _LIKE * period:
+            right = f"{number_text(period / length)} {other}"
+            return f"the stamps, {number_text(spacing)} apart, look like {word}: write `time {right}`"
+    return f"stamps are read in {unit}: give the period in the unit of the data; for uneven ones write `time {unit}`"
 
 
 def formula_texts(

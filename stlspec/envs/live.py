@@ -25,6 +25,8 @@ Reader = Callable[[Any, Any, Any], Any]
 
 _FAR = 1e30
 """A bound beyond this is none: some environments write the largest 32-bit number."""
+_FEW = 8
+"""Entries for which a number each is worth writing out."""
 
 _PATH = re.compile(r"(obs|action|info)((?:\.[A-Za-z_][A-Za-z0-9_]*|\[[0-9]{1,9}\])*)")
 _STEP = re.compile(r"\.([A-Za-z_][A-Za-z0-9_]*)|\[([0-9]+)\]")
@@ -67,7 +69,7 @@ def with_bins(environment: Environment, counts: Sequence[int] | None) -> Environ
 def _bins(environment: Environment, space: gymnasium.Space[Any], counts: Sequence[int] | None) -> Bins:
     if isinstance(space, gymnasium.spaces.Discrete):
         if counts is not None:
-            raise _wrong(counts, "left out: the observations are discrete")
+            raise _wrong(counts, "left out: the observations are discrete", "leave --bins out")
         size, first = int(space.n), float(space.start)
         if size > MOST_BINS:
             raise _unfit(environment, f"it has {size} states, and a table holds {MOST_BINS} at most")
@@ -75,17 +77,18 @@ def _bins(environment: Environment, space: gymnasium.Space[Any], counts: Sequenc
     if not isinstance(space, gymnasium.spaces.Box) or len(space.shape) != 1 or not space.shape[0]:
         raise _unfit(environment, f"its observations are {str(space)[:80]}, and bins need a flat Box")
     axes = space.shape[0]
+    fitting = f"--bins {','.join(['50'] * axes) if axes <= _FEW else '50'}"
     if counts is None:
-        raise _unfit(environment, "its observations are continuous", f"--bins {','.join(['50'] * min(axes, 8))}")
+        raise _unfit(environment, "its observations are continuous", fitting)
     listed = list(counts) * axes if len(counts) == 1 else list(counts)
     if len(listed) != axes or any(type(n) is not int or not 1 <= n <= MOST_BINS for n in listed):
-        raise _wrong(counts, f"1 or {axes} whole numbers from 1, one for each entry of the observation")
+        raise _wrong(counts, f"1 or {axes} whole numbers from 1, one for each entry of the observation", fitting)
     ends = list(zip(map(float, space.low), map(float, space.high), strict=True))
     far = tuple(not (-_FAR < low < high < _FAR) for low, high in ends)
     low, high = zip(*((-1.0, 1.0) if out else pair for pair, out in zip(ends, far, strict=True)), strict=True)
     bins = Bins(low, high, tuple(listed), far if any(far) else ())
     if bins.size > MOST_BINS:
-        raise _wrong(counts, f"at most {MOST_BINS} bins in all")
+        raise _wrong(counts, f"at most {MOST_BINS} bins in all", "cut each entry into fewer bins")
     return bins
 
 
@@ -93,8 +96,9 @@ def _unfit(environment: Environment, reason: str, way_out: str = "learn in anoth
     return UsageError([diagnostic("D869", env=environment.id, reason=reason, help=way_out)])
 
 
-def _wrong(counts: Sequence[int], allowed: str) -> UsageError:
-    return UsageError([diagnostic("D871", option="--bins", value=",".join(map(str, counts))[:40], allowed=allowed)])
+def _wrong(counts: Sequence[int], allowed: str, way_out: str) -> UsageError:
+    found = diagnostic("D871", option="--bins", value=",".join(map(str, counts))[:40], allowed=allowed)
+    return UsageError([replace(found, help=way_out)])  # there is no default for what must be cut
 
 
 def reader_of(signal: Signal, names: Sequence[str], env: str) -> Reader:

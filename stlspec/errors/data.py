@@ -8,7 +8,7 @@ CODES: tuple[Code, ...] = (
         "a sample is not a number",
         "error",
         message="signal '{signal}' is NaN at sample {sample} (time {time})",
-        help="repair the recording, or choose what to do: --on-nan hold, --on-nan drop",
+        help='repair the recording, or choose what to do: --on-nan hold or drop (`on_nan="hold"` of `stlspec.score`)',
         explanation="Robustness of a sample that is not a number means nothing, and a NaN that is let "
         "through hides whatever comes after it. The file is refused with the first such sample.",
         bad="time,x\n0,1\n1,nan\n",
@@ -125,7 +125,7 @@ CODES: tuple[Code, ...] = (
         "a time stamp off the sampling period",
         "error",
         message="sample {sample} at {time} {unit} is not a multiple of the period {period} after the first",
-        help="stamps are read in {unit}: give the period in the unit of the data; for uneven ones write `time {unit}`",
+        help="{help}",
         explanation="With a sampling period, stamps within 1 % of the period of k periods from the first are "
         "taken as k; anything else means that the declaration and the data disagree.",
         bad="# time 100 ms\ntime,x\n0,1\n130,1\n",

@@ -61,7 +61,8 @@ CODES: tuple[Code, ...] = (
         "a param without a value",
         "error",
         message="param `{name}` has no value",
-        help="give it one with `-p {name}=VALUE`, or in the spec: `param {name} = 8`",
+        help='give it one with `-p {name}=VALUE` (in Python `params={{"{name}": VALUE}}`), or in the spec: '
+        "`param {name} = 8`",
         explanation="All params are bound when a spec is compiled. `check` accepts unbound ones.",
         bad="# stlspec compile spec.stl -o spec.stlb      where the spec says: param T",
         good="# stlspec compile spec.stl -o spec.stlb -p T=8",

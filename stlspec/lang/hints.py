@@ -17,7 +17,7 @@ from stlspec.lang.expected import expected, quoted
 from stlspec.lang.failure import TEMPORAL, Failure
 from stlspec.lang.habits import bars, dotted, one_bound, other_brackets, round_range, sign_of
 from stlspec.lang.headers import blank_in_name, glued_type, no_name, priority
-from stlspec.lang.measures import unit_of_number, unit_of_signal
+from stlspec.lang.measures import unit_of_number, unit_of_param, unit_of_signal
 from stlspec.lang.phrases import PHRASES, for_all, within
 from stlspec.lang.spelling import closest
 from stlspec.lang.statements import RESERVED, STATEMENT_WORDS, first_on_line, is_word
@@ -137,7 +137,8 @@ def _misspelt_operator(failure: Failure) -> Diagnostic | None:
         candidates.append(failure.at)
     for i in candidates:
         word = str(failure.tokens[i])
-        if i < 3 or failure.tokens[i].type != "NAME" or word in failure.names:
+        header = 3 if str(failure.tokens[0]) in STATEMENT_WORDS else 0
+        if i < header or failure.tokens[i].type != "NAME" or word in failure.names:
             continue
         if word == "if":
             found = failure.error("S001", at=span_of(failure.tokens[i]), found="`if`", expected="a formula")
@@ -329,6 +330,7 @@ _RECOGNISERS: tuple[Callable[[Failure], Diagnostic | None], ...] = (
     priority,
     no_name,
     unit_of_number,
+    unit_of_param,
     unit_of_signal,
     _late_clause,
     _no_statement,

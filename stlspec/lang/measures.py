@@ -57,6 +57,20 @@ def unit_of_number(failure: Failure) -> Diagnostic | None:
     return habit(failure, way, Edit(whole, written), at=whole, wanted="a unit such as `m/s`")
 
 
+def unit_of_param(failure: Failure) -> Diagnostic | None:
+    """Describe `[0, T s]`, a unit behind a name. Not in the paper: the language."""
+    at, tokens, token = failure.at, failure.tokens, failure.token
+    if token is None or not failure.brackets or failure.brackets[-1].type != "LSQB" or at + 1 >= len(tokens):
+        return None
+    name = tokens[at - 1]
+    ends = tokens[at + 1].type in ("COMMA", "COLON", "RSQB")
+    if name.type != "NAME" or not ends or not is_word(token) or not is_unit_word(str(token)):
+        return None
+    gap = Span(span_of(name).end, span_of(token).end)
+    way = f"write `{name}`: a param carries its own unit, as in `param {name} = 5 {token}`"
+    return habit(failure, way, Edit(gap, ""), wanted="the end of the bound")
+
+
 def _end(tokens: Sequence[Token], begin: int, at: int) -> int | None:
     """Return the index behind what may be a unit, which begins right behind a number and holds token `at`."""
     first = tokens[begin]

@@ -65,6 +65,27 @@ def decode(text: str, file: Path, line: int = 1) -> Any:
         raise refusal("D836", file, format="JSON", reason="a number is too long", where=_on(line), help=hint) from None
 
 
+def is_whole(text: str) -> bool:
+    """Tell whether a text is one JSON object or list. Not in the paper: a file format."""
+    try:
+        return isinstance(json.loads(text), dict | list)
+    except (ValueError, RecursionError):
+        return False
+
+
+def is_lines(text: str) -> bool:
+    """Tell whether each of several lines is a JSON object or list. Not in the paper: a file format."""
+    lines = [line for line in text.split("\n") if line.strip()]
+    return len(lines) > 1 and all(map(is_whole, lines))
+
+
+def other_format(file: Path, reason: str, suffix: str) -> DataError:
+    """Say under which name a file of JSON is read. Not in the paper: a file format."""
+    wanted = "JSON" if suffix == ".jsonl" else "JSON Lines"
+    way = f"name it `{file.with_suffix(suffix).name}`"
+    return refusal("D836", file, format=wanted, reason=reason, where="", help=way)
+
+
 def recording_of(document: Any, file: Path, place: str = "the demonstration") -> Recording:
     """Read one demonstration object.
 

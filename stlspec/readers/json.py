@@ -6,7 +6,8 @@ each line is read by `jsonl`, whatever its name promises is not guessed at.
 
 from pathlib import Path
 
-from stlspec.readers.document import decode, numbered, recording_of
+from stlspec.errors import DataError
+from stlspec.readers.document import decode, is_lines, numbered, other_format, recording_of
 from stlspec.readers.model import Recording, read_text, refusal
 
 
@@ -18,7 +19,12 @@ def read(path: Path) -> list[Recording]:
     Raises: DataError D803, D805, D830, D832, D833, D835 to D839: the file cannot be used.
     """
     text = read_text(path, "a demonstration object, or a list of them")
-    document = decode(text, path)
+    try:
+        document = decode(text, path)
+    except DataError:
+        if is_lines(text):
+            raise other_format(path, "each line is a JSON document of its own", ".jsonl") from None
+        raise
     if not isinstance(document, list):
         return [recording_of(document, path)]
     if not document:

@@ -80,3 +80,16 @@ def test_in_a_template_the_argument_is_named():
     (problem,) = errors(f"{HEAD}let faster(a, b) = a > b\nhard a: faster(v, w)\n")
     assert problem.help == "write `w * 1000 m/km`; times are converted already"
     assert problem.fixes == ()
+
+
+@pytest.mark.parametrize(
+    ("statement", "way"),
+    [
+        ("hard a: always[0, Limit] (1 > 0)", "declare it: `param Limit = ...` or `let Limit = ...`"),
+        ("signal xx in [0, 2 * Limit]", "declare it: `param Limit = ...` or `let Limit = ...`"),
+        ("hard a: always (1 > Limit)", "declare it: `signal Limit`, `param Limit = ...` or `let Limit = ...`"),
+    ],
+)
+def test_where_no_signal_may_stand_none_is_proposed(statement, way):
+    (found,) = check(parse(SourceText.of("s", statement + "\n")))[1]
+    assert (found.code, found.help) == ("N101", way)

@@ -81,3 +81,11 @@ def test_a_bound_that_came_back_with_32_bits_is_the_bound():
     assert read([float(np.float32(-1.2))], None, {}) == -1.2
     assert read([-1.3], None, {}) == -1.3
     assert read([0.25], None, {}) == 0.25
+
+
+def test_a_wrong_number_of_bins_is_told_the_right_one():
+    for counts, way in (((5, 5), "--bins 50,50,50,50"), ((1000,), "cut each entry into fewer bins")):
+        with pytest.raises(UsageError) as error:
+            with_bins(make_environment("CartPole-v1"), counts)
+        (found,) = error.value.diagnostics
+        assert (found.code, found.help) == ("D871", way)

@@ -24,6 +24,12 @@ def problems(text):
         ("hard a: always (x > 3 1/s)", LEAVE_OUT, "hard a: always (x > 3)"),
         ("hard a: always (x > 3 N m)", LEAVE_OUT, "hard a: always (x > 3)"),
         ("let a = x > 3 m s", LEAVE_OUT, "let a = x > 3"),
+        ("hard a: F[0, T s] p", "write `T`: a param carries its own unit, as in `param T = 5 s`", "hard a: F[0, T] p"),
+        (
+            "hard a: F[T ms, 9] p",
+            "write `T`: a param carries its own unit, as in `param T = 5 ms`",
+            "hard a: F[T, 9] p",
+        ),
         ("signal y [m/s]", 'write `unit "m/s"`', 'signal y unit "m/s"'),
         ("signal y (N m)", 'write `unit "N*m"`', 'signal y unit "N*m"'),
         ("signal y: real [m**2]", 'write `unit "m**2"`', 'signal y: real unit "m**2"'),

@@ -41,3 +41,11 @@ def test_a_file_that_cannot_be_used_is_one_diagnostic(load, text, code, words, t
     (found,) = error.value.diagnostics
     assert (found.code, found.file) == (code, str(tmp_path / "d.json"))
     assert words in str(error.value)
+
+
+def test_one_document_a_line_is_told_its_name(tmp_path):
+    (tmp_path / "d.json").write_text('{"states": [0]}\n{"states": [1]}\n')
+    with pytest.raises(DataError) as error:
+        read(tmp_path / "d.json")
+    (found,) = error.value.diagnostics
+    assert (found.code, found.help) == ("D836", "name it `d.jsonl`") and "each line" in found.message

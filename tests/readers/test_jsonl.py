@@ -39,3 +39,16 @@ def test_a_file_that_cannot_be_used_is_one_diagnostic(load, text, code, words, t
     (found,) = error.value.diagnostics
     assert (found.code, found.file) == (code, str(tmp_path / "d.jsonl"))
     assert words in str(error.value)
+
+
+@pytest.mark.parametrize("text", ['{\n "states": [0]\n}\n', '[\n {"states": [0]},\n {"states": [1]}\n]\n'])
+def test_one_document_over_several_lines_is_told_its_name(load, text):
+    with pytest.raises(DataError) as error:
+        load(text)
+    (found,) = error.value.diagnostics
+    assert (found.code, found.help) == ("D836", "name it `d.json`") and "one JSON document" in found.message
+
+
+def test_a_line_with_a_key_twice_is_no_other_format(load):
+    with pytest.raises(DataError, match="comes twice"):
+        load('{"states": [0], "states": [1]}')

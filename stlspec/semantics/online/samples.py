@@ -12,6 +12,7 @@ import numpy as np
 
 from stlspec.columns import snapped
 from stlspec.compiler.bundle import Signal, TimeBase
+from stlspec.compiler.notation import off_period
 from stlspec.compiler.printing import number_text
 from stlspec.errors import DataError, diagnostic
 from stlspec.lang.spelling import closest_column
@@ -145,7 +146,8 @@ class Clock(Remembering):
         last = self.ticks // period
         if abs(periods - count) > _PERIOD_TOLERANCE or (self.n and count <= last):
             length = f"{number_text(period / base.ticks_per_unit)} {base.unit}"
-            refuse("D811", sample=self.n, time=number_text(stamp), period=length, unit=base.unit)
+            way = off_period(base, stamp - self.stamp if self.stamp is not None else stamp)
+            refuse("D811", sample=self.n, time=number_text(stamp), period=length, unit=base.unit, help=way)
         if self._gapless and self.n and count > last + 1:
             refuse("D892", sample=self.n, time=number_text(stamp), periods=count - last)
         return count * period
