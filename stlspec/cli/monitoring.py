@@ -18,7 +18,7 @@ import typer
 
 from stlspec.cli.options import FormatOption, Params, read_params, standard_input
 from stlspec.cli.output import Format, error_document, warn
-from stlspec.compiler.printing import number_text
+from stlspec.compiler.printing import number_text, short_text
 from stlspec.errors import DataError, StlspecError, diagnostic
 
 if TYPE_CHECKING:
@@ -217,7 +217,7 @@ def _standing_line(monitor: "Monitor", told: Mapping[str, "Standing"], as_json: 
         }
         return _json_line({"sample": sample, "time": _number(monitor.time), "requirements": rows})
     parts = [
-        f"{name} {s.verdict} [{number_text(s.low)}, {number_text(s.high)}] now {number_text(s.current)}"
+        f"{name} {s.verdict} [{short_text(s.low)}, {short_text(s.high)}] now {short_text(s.current)}"
         for name, s in told.items()
     ]
     return _text_line(sample, monitor.time, parts)
@@ -226,7 +226,7 @@ def _standing_line(monitor: "Monitor", told: Mapping[str, "Standing"], as_json: 
 def _known_line(known: "Known", as_json: bool) -> str:
     if as_json:
         return _json_line(known._asdict() | {"robustness": _number(known.robustness), "time": _number(known.time)})
-    text = f"{known.requirement} {known.verdict} {number_text(known.robustness)}"
+    text = f"{known.requirement} {known.verdict} {short_text(known.robustness)}"
     return _text_line(known.sample, known.time, [text])
 
 
@@ -235,7 +235,7 @@ def _final_line(monitor: "Monitor", rest: Mapping[str, Any], as_json: bool) -> s
         rows = {name: {"robustness": _number(f.robustness), "verdict": f.verdict} for name, f in rest.items()}
         head = {"final": True, "sample": monitor.n_samples - 1, "time": _number(monitor.time)}
         return _json_line({**head, "requirements": rows})
-    parts = [f"{name} {f.verdict} {number_text(f.robustness)}" for name, f in rest.items()]
+    parts = [f"{name} {f.verdict} {short_text(f.robustness)}" for name, f in rest.items()]
     return "final: " + "; ".join(parts)
 
 

@@ -26,6 +26,11 @@ def number_text(value: float) -> str:
     return text.removesuffix(".0")
 
 
+def short_text(value: float) -> str:
+    """Return a number for a person, cut to six digits. Not in the paper: it serves the messages."""
+    return f"{value + 0.0:.6g}"
+
+
 def counted(count: int, noun: str) -> str:
     """Return "1 error", "2 errors". Not in the paper: it serves the messages."""
     return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, Sequence
 
 from stlspec.compiler.ir import COMPARISONS, Node
-from stlspec.compiler.printing import expression_text, number_text
+from stlspec.compiler.printing import expression_text, number_text, short_text
 from stlspec.semantics.robustness import evaluate_nodes
 from stlspec.traces import Trace
 
@@ -70,17 +70,13 @@ class _Side:
         self._name = expression_text(nodes, index)
 
     def text(self, exact: bool) -> str:
-        number = number_text(self.value) if exact else _short(self.value)
+        number = number_text(self.value) if exact else short_text(self.value)
         return number if self.constant else f"{self._name} = {number}"
-
-
-def _short(value: float) -> str:
-    return f"{value + 0.0:.6g}"
 
 
 def _same_side(sign: str, left: float, right: float) -> bool:
     """Say whether the shortened numbers still stand in the same relation."""
-    shortened = _COMPARE[sign](float(_short(left)), float(_short(right)))
+    shortened = _COMPARE[sign](float(short_text(left)), float(short_text(right)))
     return shortened == _COMPARE[sign](left, right)
 
 

@@ -121,6 +121,18 @@ def test_every_gives_values_once_known_and_the_rest_at_the_end(spec: str, monito
     assert lines[0] == "0: reach violated -1"
 
 
+def test_numbers_are_as_short_as_in_other_text_and_whole_in_json(spec: str, monitored: Run) -> None:
+    data = "d_obs,d_goal\n1.3,0.7\n"  # 1.3 - 1 is 0.30000000000000004
+    _, lines, _ = monitored(data, spec)
+    assert lines[0].startswith("0: avoid undecided [-1, 0.3] now 0.3;") and lines[-1].startswith(
+        "final: avoid satisfied 0.3;"
+    )
+    _, lines, _ = monitored(data, spec, "--format", "json")
+    assert json.loads(lines[0])["requirements"]["avoid"]["high"] == 1.3 - 1
+    _, lines, _ = monitored(data, spec, "--reading", "every")
+    assert lines[0] == "0: avoid satisfied 0.3"
+
+
 def test_time_stamps_booleans_and_sources(tmp_path: Path, monitored: Run) -> None:
     path = tmp_path / "timed.stl"
     path.write_text(TIMED)
