@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from stlspec.compiler.bundle import TimeBase
 from stlspec.compiler.ir import COMPARISONS, REAL, Interval, Node
 from stlspec.compiler.printing import LONGEST, expression_text, number_text
+from stlspec.compiler.rates import Written, comparison_text
 from stlspec.lang.units import NANOSECONDS
 
 _LIKE = 0.01
@@ -46,14 +47,19 @@ def off_period(time: TimeBase, spacing: float) -> str:
 
 
 def formula_texts(
-    nodes: Sequence[Node], root: int, time: TimeBase, names: Mapping[str, int] | None = None
+    nodes: Sequence[Node],
+    root: int,
+    time: TimeBase,
+    names: Mapping[str, int] | None = None,
+    units: Mapping[int, Written] | None = None,
 ) -> dict[int, str]:
     """Return the text of a formula and of all formulas below it.
 
     Not in the paper: it serves the explanations.
 
     Args:    nodes: the DAG, children first. root: a formula. time: in whose unit intervals are written.
-             names: the root of each let; a let below a formula is written as its name.
+             names: the root of each let; a let below a formula is written as its name. units: of comparisons whose
+             constants are to be shown in the unit that was written.
     Returns: for each node index one line of at most `LONGEST` characters, cut off with "…".
     """
     named: dict[int, str] = {}
@@ -63,6 +69,9 @@ def formula_texts(
     ranks: dict[int, int] = {}
     for index in _formulas(nodes, root):
         text, ranks[index] = _text(nodes, index, texts, ranks, named, time)
+        if units and index in units:
+            sides = [expression_text(nodes, child) for child in nodes[index].children]
+            text = comparison_text(nodes[index], nodes, sides, units[index])
         texts[index] = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
     return texts
 

@@ -19,6 +19,7 @@ from stlspec.compiler.bundle import BundleData, TimeBase
 from stlspec.compiler.ir import Node
 from stlspec.compiler.passes import optimised
 from stlspec.compiler.printing import number_text
+from stlspec.compiler.rates import written_unit
 from stlspec.errors import DataError, UsageError, diagnostic
 from stlspec.markup.charts import robustness_svg
 from stlspec.markup.elements import Markup
@@ -69,6 +70,7 @@ class Origin:
     trace: Trace
     at: int
     algebra: Algebra = MIN_MAX
+    bundle: BundleData | None = None
 
     def decisions(self) -> list[Decision]:
         """Look for what decides the value; a batch in parts of bounded size."""
@@ -120,7 +122,8 @@ class RequirementResult:
         sample, predicate = int(decision.samples[0]), int(decision.predicates[0])
         if sample < 0:
             return None
-        reason = reason_text(origin.nodes, predicate, bool(decision.negated[0]), origin.trace, sample)
+        written = None if origin.bundle is None else written_unit(origin.bundle, predicate)
+        reason = reason_text(origin.nodes, predicate, bool(decision.negated[0]), origin.trace, sample, written)
         return Witness(sample, origin.trace.time(sample), predicate, reason)
 
     @cached_property
@@ -280,7 +283,7 @@ def evaluate_trace(
     results = {}
     for r, values, value in zip(bundle.requirements, exact, robustness, strict=True):
         verdict = Verdict.SATISFIED if values[sample] > 0 else Verdict.VIOLATED
-        origin = Origin(bundle.nodes, r.root, trace, sample, algebra)
+        origin = Origin(bundle.nodes, r.root, trace, sample, algebra, bundle)
         results[r.name] = RequirementResult(float(value), verdict, origin, _frozen(values))
     return Evaluation(results)
 
@@ -304,7 +307,7 @@ def _evaluate_batch(
     )
     results = {}
     for number, requirement in enumerate(bundle.requirements):
-        origins = tuple(Origin(bundle.nodes, requirement.root, t, s, algebra) for t, s in pairs)
+        origins = tuple(Origin(bundle.nodes, requirement.root, t, s, algebra, bundle) for t, s in pairs)
         satisfied = _frozen(exact[number] > 0)
         results[requirement.name] = BatchResult(_frozen(robustness[number].copy()), satisfied, origins, ragged)
     return Evaluation(results)

@@ -19,6 +19,7 @@ from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.ir import COMPARISONS, REAL, Node
 from stlspec.compiler.notation import formula_texts
 from stlspec.compiler.printing import expression_text
+from stlspec.compiler.rates import written_unit
 from stlspec.errors import UsageError, diagnostic
 from stlspec.semantics.chains import Link, Values, bearing_samples, find_chain, values_below
 from stlspec.semantics.changes import Change
@@ -231,7 +232,10 @@ def named_values(
 
 def _steps(bundle: BundleData, found: Values, chain: Sequence[Link], trace: Trace) -> tuple[Step, ...]:
     names = {index: name for name, index in bundle.names.items()}
-    texts = formula_texts(found.nodes, found.root, bundle.time, bundle.names)
+    predicate = chain[-1].index
+    written = written_unit(bundle, predicate)
+    units = {} if written is None else {predicate: written}
+    texts = formula_texts(found.nodes, found.root, bundle.time, bundle.names, units)
     return tuple(
         Step(
             texts[link.index],

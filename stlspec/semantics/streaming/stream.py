@@ -158,7 +158,7 @@ class Stream:
         value, label = values[root], finding.label
         witness = None
         if label is not None:
-            witness = Witness(label.sample, label.time, label.predicate, reason(self._nodes, label))
+            witness = Witness(label.sample, label.time, label.predicate, reason(self._bundle, label))
         vacuous = bool(np.isinf(value)) and label is None and finding.ran_out
         verdict = Verdict.SATISFIED if value > 0 else Verdict.VIOLATED
         return Outcome(float(shown(np.array([value]))[0]), verdict, vacuous, witness)

@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from stlspec.compiler.bundle import BundleData
 from stlspec.compiler.ir import REAL, Node
+from stlspec.compiler.rates import written_unit
 from stlspec.semantics.expressions import expression_values
 from stlspec.semantics.reasons import reason_of
 from stlspec.semantics.robustness import formula_values
@@ -146,9 +148,10 @@ class View:
         return Label(self.first + sample, predicate, bool(marks.negated[0]), self.trace.time(sample), operands)
 
 
-def reason(nodes: Sequence[Node], label: Label) -> str:
+def reason(bundle: BundleData, label: Label) -> str:
     """Say what a deciding predicate's operands are, and what is needed of them."""
-    return reason_of(nodes, label.predicate, label.negated, label.operands)
+    written = written_unit(bundle, label.predicate)
+    return reason_of(bundle.nodes, label.predicate, label.negated, label.operands, written)
 
 
 class _PieceMarks(Marks):

@@ -53,4 +53,12 @@ def test_a_finding_says_why():
     bundle, view = view_of("signal x\nhard r: always (x > 4)\n", [9, 3, 3])
     root = next(i for i, n in enumerate(bundle.nodes) if n.op == "gt")
     found = view.deciding(root, np.array([False, True, True]), -1.0)
-    assert found.label.sample == 1 and reason(bundle.nodes, found.label) == "x = 3, needs > 4"
+    assert found.label.sample == 1 and reason(bundle, found.label) == "x = 3, needs > 4"
+
+
+def test_a_rate_is_in_the_unit_that_was_written():
+    text = 'time 100 ms\nsignal x unit "m"\nhard r: always (rate(x) > 3 m/s)\n'
+    bundle, view = view_of(text, [1, 1.5, 1.6])
+    root = next(i for i, n in enumerate(bundle.nodes) if n.op == "gt")
+    found = view.deciding(root, np.array([False, False, True]), float(view.values[root][2]))
+    assert reason(bundle, found.label) == "rate(x) = 1 m/s, needs > 3 m/s"
