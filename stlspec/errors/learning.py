@@ -124,7 +124,7 @@ CODES: tuple[Code, ...] = (
         help="write it as `hard {requirement}: always (...)` over the present and the past, or make it soft",
         explanation="The learner watches hard requirements at every step. One with memory runs beside the "
         "environment as a machine with finitely many states, so a past operator may not stand over a future "
-        "one, nor delta or rate over another or beside `now`.",
+        "one, nor delta or rate over another or beside `now`, nor may what is left to demand grow with every sample.",
         bad="signal x\nhard odd: always (once (eventually (x > 1)))\n",
         good="signal x\nhard fine: always (once[0, 5] (x > 1))\n",
         kind="shown",

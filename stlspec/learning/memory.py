@@ -133,6 +133,17 @@ def at_end(machine: Machine, residual: Residual) -> bool:
     return (all if residual[0] == "and" else any)(at_end(machine, part) for part in residual[1])
 
 
+def size_of(residual: Residual) -> int:
+    """Return of how many demands a residual consists. Not in the paper: error handling."""
+    pending, size = [residual], 0
+    while pending:
+        part = pending.pop()
+        size += 1
+        if isinstance(part, tuple) and part[0] in ("not", "and", "or"):
+            pending.extend([part[1]] if part[0] == "not" else part[1])
+    return size
+
+
 def _past(machine: Machine, index: int, memory: int, holds: Callable[[int], bool]) -> tuple[bool, int]:
     """Return the value of a past operator, and what it remembers after this sample.
 

@@ -23,6 +23,7 @@ from stlspec.learning.memory import (
     first_state,
     make_machine,
     read,
+    size_of,
 )
 from stlspec.learning.tables import over_steps, over_time, tabulate
 
@@ -158,7 +159,8 @@ def make_product(
         return Product((), environment.start, rows, tuple(forbidden), (), (), robustness, tuple(forbidden))
     machine = _machine(bundle, split.remembering, longest)
     letters = _Letters(bundle, environment, transitions, machine, split.remembering, longest, earliest)
-    return _Explorer(environment, transitions, forbidden, machine, letters).explore(robustness)
+    explorer = _Explorer(environment, transitions, forbidden, machine, letters, split.remembering)
+    return explorer.explore(robustness)
 
 
 def _machine(bundle: BundleData, requirements: Sequence[Requirement], longest: int) -> Machine:
@@ -262,8 +264,10 @@ class _Explorer:
         forbidden: Sequence[bool],
         machine: Machine,
         letters: _Letters,
+        requirements: Sequence[Requirement],
     ) -> None:
         self.environment = environment
+        self.requirements = requirements
         self.transitions = transitions
         self.forbidden = forbidden
         self.machine = machine
@@ -286,7 +290,7 @@ class _Explorer:
         holds = self.letters(before, place, time)
         key = memory, holds
         if key not in self.read:
-            self.read[key] = self.memory(read(self.machine, self.known[memory], holds))
+            self.read[key] = self.memory(self.after(memory, holds))
         state = place, time, self.read[key]
         if state not in self.numbers:
             self.numbers[state] = len(self.states)
@@ -294,6 +298,15 @@ class _Explorer:
             if len(self.states) > MOST_STATES:
                 raise UsageError([diagnostic("D878", places=self.environment.n_states, most=f"{MOST_STATES:,}")])
         return self.numbers[state]
+
+    def after(self, memory: int, holds: Sequence[bool]) -> MachineState:
+        """Let the machine read a sample; refuse what asks more of the rest with every sample, without an end."""
+        try:
+            return read(self.machine, self.known[memory], holds)
+        except RecursionError:
+            demands = [size_of(residual) for residual in self.known[memory][0]]
+        requirement = self.requirements[demands.index(max(demands))]
+        _refuse(requirement, "what it asks of the samples to come grows with every sample")
 
     def lost(self, number: int) -> bool:
         """Tell whether a hard requirement is violated in a learner state."""

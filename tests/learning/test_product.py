@@ -136,6 +136,7 @@ def test_terminal_states_lead_nowhere():
         ("always (once (eventually[0, 2] in_a))", "past operator"),
         ("always (delta(delta(row)) < 1)", "delta or rate of delta"),
         ("always (delta(row) < now)", "both delta or rate and now"),
+        ("(eventually (in_a since in_b)) until (eventually once in_b)", "grows with every sample"),
     ],
 )
 def test_what_has_no_bound_is_refused_with_the_reason(formula, reason):
