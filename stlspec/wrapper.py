@@ -20,7 +20,7 @@ from gymnasium.wrappers import Autoreset
 
 from stlspec import api
 from stlspec.compiler.bundle import BundleData
-from stlspec.compiler.bundle_file import meaning_sha256
+from stlspec.compiler.bundle_file import dump, load, meaning_sha256
 from stlspec.compiler.dependencies import ancestors
 from stlspec.documents import DamageError
 from stlspec.envs.bins import read_bins
@@ -32,7 +32,7 @@ from stlspec.errors import DataError, StlspecError, UsageError, diagnostic
 from stlspec.errors.model import render
 from stlspec.rewards import RewardMap, load_reward, read_reward
 from stlspec.semantics.evaluation import Verdict
-from stlspec.semantics.online.monitor import make_monitor
+from stlspec.semantics.online.monitor import Monitor, make_monitor
 
 PENALTY = 1.0
 """What a violation costs, whatever the base reward: as much as all goals pay."""
@@ -92,10 +92,9 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
             what = "STLReward wraps one environment, and this is a vector of them"
             way_out = "wrap each: SyncVectorEnv([lambda: STLReward(gymnasium.make(ID), SPEC)] * 4)"
             raise UsageError([diagnostic("D880", what=what, help=way_out)])
-        if isinstance(spec, BundleData) and not isinstance(spec, api.Bundle):
-            spec = api.publish(spec)
         plain: dict[str, Any] = {
-            "spec": str(spec) if isinstance(spec, Path) else spec,
+            # What is recorded makes the wrapper again elsewhere, so it is text, a bundle as its document.
+            "spec": dump(spec).decode() if isinstance(spec, BundleData) else str(spec),
             "reward": reward.to_json() if isinstance(reward, RewardMap) else _as_text(reward),
             "params": None if params is None else dict(params),
         }
@@ -118,6 +117,23 @@ class STLReward(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         used = {str(node.value) for node in self.bundle.nodes if node.op in ("signal", "bool")}
         self._late = any((s.source or "").startswith("action") for s in self.bundle.signals if s.name in used)
         self._over = True
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out functions that were made for this environment and spec, and save what monitors remember."""
+        state = {name: value for name, value in self.__dict__.items() if name != "_readers"}
+        if "_monitor" in state:
+            state["_monitor"] = self._monitor.to_bytes()
+            state["_guards"] = {name: guard.to_bytes() for name, guard in self._guards.items()}
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make readers and monitors again."""
+        self.__dict__.update(state)
+        self._readers = _readers(self.bundle, self._known, _id(self.env))
+        if "_monitor" in state:
+            self._monitor = Monitor.from_bytes(self.bundle, state["_monitor"])
+            saved = state["_guards"].items()
+            self._guards = {name: Monitor.from_bytes(_alone(self.bundle, name), data) for name, data in saved}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode; see `gymnasium.Env.reset`. The info has what the steps' have, but for the reward."""
@@ -229,8 +245,13 @@ def _check(env: gymnasium.Env[Any, Any], gamma: float, **chosen: str) -> None:
 
 
 def _bundle(spec: "str | Path | BundleData", params: Mapping[str, float | str] | None) -> BundleData:
+    if isinstance(spec, str) and spec.startswith("{"):
+        spec = load(spec.encode())
     if isinstance(spec, BundleData):
-        return spec
+        if params:
+            what, way = "params are bound when a bundle is compiled, so it takes none here", "give the spec's path"
+            raise UsageError([diagnostic("D880", what=what, help=way)])
+        return spec if isinstance(spec, api.Bundle) else api.publish(spec)
     if isinstance(spec, Path) or ("\n" not in spec and spec.endswith((".stl", ".stlspec", ".stlb"))):
         return api.read(spec, params)
     return api.compile(spec, params)
@@ -244,7 +265,8 @@ def _prerequisites(bundle: BundleData) -> dict[str, list[str]]:
 
 
 def _alone(bundle: BundleData, name: str) -> BundleData:
-    return replace(bundle, requirements=tuple(r for r in bundle.requirements if r.name == name))
+    place = next(i for i, r in enumerate(bundle.requirements) if r.name == name)
+    return replace(bundle, requirements=(bundle.requirements[place],), weights=(1.0,))
 
 
 def _id(env: gymnasium.Env[Any, Any]) -> str:
@@ -252,8 +274,15 @@ def _id(env: gymnasium.Env[Any, Any]) -> str:
 
 
 def _known(env: gymnasium.Env[Any, Any]) -> Environment | None:
-    """Describe a built-in environment by the map that it really has; None for any other."""
+    """Describe a built-in environment by the map that it really has; None for any other.
+
+    Where a wrapper makes other observations of them, they are no longer the states that the signals are known for.
+    """
     bare: Any = env.unwrapped
+    while isinstance(env, gymnasium.Wrapper):
+        if isinstance(env, gymnasium.ObservationWrapper):
+            return None
+        env = env.env
     if isinstance(bare, GridWorld):
         return make_environment("stlspec/GridWorld-v0", None, bare.map)
     kind = f"{type(bare).__module__}.{type(bare).__name__}"

@@ -6,12 +6,15 @@ from pathlib import Path
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import ResetNeeded
+from gymnasium.spaces import Discrete
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
-from gymnasium.wrappers import Autoreset, TimeLimit
+from gymnasium.wrappers import Autoreset, TimeLimit, TransformObservation
 
-import stlspec.envs.gridworld  # noqa: F401
+import stlspec
+import stlspec.envs.gridworld
 from stlspec import api
 from stlspec.demos import make_demonstration
 from stlspec.envs.catalogue import make_environment
@@ -131,6 +134,40 @@ def test_it_can_be_made_again_from_its_description(tmp_path):
     assert isinstance(again, STLReward)
     assert again.bundle.meaning_sha256 == env.bundle.meaning_sha256
     assert pickle.loads(pickle.dumps(env.spec)).additional_wrappers[-1].kwargs["spec"] == str(place)
+
+
+def test_it_is_pickled_in_the_middle_of_an_episode_and_goes_on_alike(tmp_path):
+    env = STLReward(gymnasium.make("FrozenLake-v1", is_slippery=False), GRID + "param T = 3\n", base="spec")
+    env.reset(seed=0)
+    env.step(1)
+    again = pickle.loads(pickle.dumps(env))
+    for action in (1, 2, 2):
+        assert repr(again.step(action)) == repr(env.step(action))
+
+
+def test_its_description_is_text_also_with_a_bundle():
+    bundle = stlspec.compile(GRID + "param T\n", params={"T": 3})
+    env = STLReward(gymnasium.make("FrozenLake-v1", is_slippery=False), bundle)
+    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert again.bundle == env.bundle
+
+
+def test_params_of_a_bundle_are_bound_already():
+    bundle = stlspec.compile(GRID + "param T\n", params={"T": 3})
+    with pytest.raises(UsageError) as error:
+        STLReward(gymnasium.make("FrozenLake-v1"), bundle, params={"T": 4})
+    (found,) = error.value.diagnostics
+    assert found.code == "D880"
+    assert "takes none" in found.message
+
+
+def test_observations_that_a_wrapper_changed_are_no_states():
+    """Else the start, shown as 15, would be taken for the goal."""
+    lake = TransformObservation(gymnasium.make("FrozenLake-v1"), lambda state: 15 - state, Discrete(16))
+    with pytest.raises(UsageError) as error:
+        STLReward(lake, "signal d_goal\nsoft reach: eventually (d_goal < 1)\n")
+    assert error.value.diagnostics[0].code == "D870"
+    STLReward(lake, 'signal s from "obs"\nsoft reach: eventually (s < 1)\n').reset(seed=0)
 
 
 @pytest.mark.parametrize("kind", [SyncVectorEnv, AsyncVectorEnv])
