@@ -1,31 +1,49 @@
-"""`stlspec.gym`: light until used, and in nobody's way."""
+"""`stlspec.gym`: in nobody's way, and the environment is known once it is imported."""
 
 import subprocess
 import sys
 
 import pytest
 
-PROBE = """
-import sys
-import stlspec
-import stlspec.gym
-heavy = {"numpy", "gymnasium", "networkx", "rich", "typer"} & set(sys.modules)
-assert not heavy, heavy
-assert stlspec.gym is sys.modules["stlspec.gym"]
-import gymnasium
-assert "stlspec" not in gymnasium.__file__
-stlspec.gym.STLReward
-assert "stlspec.wrapper" in sys.modules
-"""
+
+def run(*lines):
+    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, timeout=60)
 
 
-def test_importing_it_loads_nothing_and_shadows_nothing():
-    subprocess.run([sys.executable, "-c", PROBE], check=True, timeout=60)
+def test_only_asking_for_it_loads_gymnasium_and_nothing_is_shadowed():
+    run(
+        "import sys",
+        "import stlspec",
+        "assert not {'numpy', 'gymnasium', 'networkx', 'rich', 'typer'} & set(sys.modules)",
+        "assert stlspec.gym is sys.modules['stlspec.gym']",
+        "import gymnasium",
+        "assert 'stlspec' not in gymnasium.__file__",
+        "assert stlspec.gym.STLReward is sys.modules['stlspec.wrapper'].STLReward",
+    )
 
 
-def test_it_has_the_wrapper_and_nothing_else():
-    import stlspec.gym
+MAKE = "assert gymnasium.make('stlspec/GridWorld-v0', map=['SG']).reset()[0] == 0"
 
-    assert dir(stlspec.gym) == ["STLReward"]
-    with pytest.raises(AttributeError, match="nothing"):
-        stlspec.gym.nothing  # noqa: B018
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ("import stlspec.gym", "import gymnasium", MAKE),
+        ("import gymnasium", "import stlspec.gym", MAKE),
+        ("import gymnasium", MAKE.replace("'stlspec/", "'stlspec.gym:stlspec/")),
+        ("import stlspec.gym, gymnasium", MAKE.replace("'stlspec/", "'stlspec.gym:stlspec/")),
+    ],
+)
+def test_gymnasium_makes_the_grid_world(lines):
+    run(*lines)
+
+
+def test_loading_a_policy_makes_the_grid_world_known(tmp_path):
+    run(
+        "import gymnasium, stlspec",
+        "try:",
+        f"    stlspec.load_policy({str(tmp_path)!r})",
+        "except stlspec.DataError:",
+        "    pass",
+        MAKE,
+    )

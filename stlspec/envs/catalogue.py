@@ -9,6 +9,7 @@ are named, not imported, so that gymnasium loads only when an environment is ask
 import json
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -27,6 +28,8 @@ _FACTORIES = {
     "MountainCar-v0": "stlspec.envs.mountaincar:environment",
 }
 _FOREIGN = "stlspec.envs.foreign:environment"
+_REGISTERING = "stlspec.envs.foreign:registering"
+_MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 _LIVE = "stlspec.envs.foreign:make"
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 _FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
@@ -44,8 +47,9 @@ def make_environment(
 
     Not in the paper: the paper's environments and any other of gymnasium.
 
-    Args: args: its arguments. map_rows: its map, if it takes one, as rows or as lines of text. file: the input
-        that asks for it, for messages.
+    Args: id: of one that is built in, added by a package, or registered in gymnasium; MODULE:ID imports the
+        module first, as `gymnasium.make` does, so take no such id from data. args: its arguments. map_rows: its
+        map, if it takes one, as rows or as lines of text. file: the input that asks for it, for messages.
     Returns: the same object for the same request, since environments do not change.
     Raises: InputError D820, D821, D823 to D826, D842, D843.
     """
@@ -77,7 +81,8 @@ def environment_of(description: Any, *, file: str | None = None) -> Environment:
 
     Not in the paper: a file format.
 
-    Raises: UsageError D829: it is described in another way; otherwise as `make_environment`.
+    Raises: UsageError D829: it is described in another way, or its id names a module; otherwise as
+        `make_environment`.
     """
     reason = _misdescribed(description)
     if reason:
@@ -125,6 +130,10 @@ def _rows(map_rows: Sequence[str]) -> tuple[str, ...]:
 @lru_cache(maxsize=_KEPT)
 def _made(id: str, key: str, rows: tuple[str, ...] | None) -> Environment:  # noqa: A002
     args = json.loads(key)
+    module, colon, registered = id.partition(":")
+    if colon and _MODULE.fullmatch(module):
+        _call(EntryPoint(id, _REGISTERING, GROUP), module, registered)
+        return replace(_made(registered, key, rows), module=module)
     if id in _FACTORIES:
         return _call(EntryPoint(id, _FACTORIES[id], GROUP), args, rows)
     added = entry_points(group=GROUP)
@@ -135,14 +144,13 @@ def _made(id: str, key: str, rows: tuple[str, ...] | None) -> Environment:  # no
     return _call(EntryPoint(id, _FOREIGN, GROUP), id, args, rows, known)
 
 
-def _call(point: EntryPoint, *arguments: Any) -> Environment:
+def _call(point: EntryPoint, *arguments: Any) -> Any:
     try:
         factory = point.load()
     except (ImportError, AttributeError) as error:
         reason = str(error).splitlines()[0][:200]
         raise UsageError([diagnostic("D842", name=point.name, group=GROUP, reason=reason)]) from error
-    made: Environment = factory(*arguments)
-    return made
+    return factory(*arguments)
 
 
 def _misdescribed(description: Any) -> str:
@@ -150,6 +158,8 @@ def _misdescribed(description: Any) -> str:
         return "it should be an object"
     if not isinstance(description.get("id"), str):
         return "its 'id' should be text"
+    if ":" in description["id"]:
+        return "its 'id' names a module, and a file does not choose what is imported; `--env MODULE:ID` does"
     args, rows = description.get("args"), description.get("map")
     if args is not None and not isinstance(args, Mapping):
         return "its 'args' should be an object"

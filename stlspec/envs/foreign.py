@@ -8,6 +8,7 @@ callers whose user asked for it.
 import difflib
 import warnings
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from typing import Any
 
 import gymnasium
@@ -28,12 +29,30 @@ def environment(env_id: str, args: Mapping[str, Any], rows: Sequence[str] | None
     spec = gymnasium.registry.get(env_id)
     if spec is None:
         close = difflib.get_close_matches(env_id, [*ids, *gymnasium.registry], 1)
-        known = "known are " + ", ".join(ids) + ", and every id that gymnasium has registered"
+        known = "known are " + ", ".join(ids) + ", and every id that gymnasium has registered; for one of your own "
+        known += "name the module that registers it: --env MODULE:ID"
         hint = f"did you mean '{close[0]}'?" if close else known
         raise UsageError([diagnostic("D820", id=env_id[:60], help=hint)])
     if rows is not None:
         raise UsageError([diagnostic("D821", id=env_id, what="a map", help="leave out the map")])
     return Environment(id=env_id, args=dict(args), max_steps=spec.max_episode_steps, options=dict(args))
+
+
+def registering(module: str, env_id: str) -> None:
+    """Import the module that registers an environment, because the user has named it.
+
+    Not in the paper: gymnasium's own form MODULE:ID.
+
+    Raises: UsageError D843: it cannot be imported.
+    """
+    try:
+        import_module(module)
+    except Exception as error:
+        # What a module does on import is its own affair, so anything may be raised.
+        lines = str(error).splitlines() or [type(error).__name__]
+        place = "it is looked for in the current folder and among the installed packages"
+        reason = f"module '{module}' cannot be imported ({lines[0][:120]}); {place}"
+        raise UsageError([diagnostic("D843", id=env_id, reason=reason)]) from error
 
 
 def make(environment: Environment, **options: Any) -> gymnasium.Env[Any, Any]:
@@ -44,7 +63,7 @@ def make(environment: Environment, **options: Any) -> gymnasium.Env[Any, Any]:
     Args: options: further keyword arguments of `gymnasium.make`, such as render_mode.
     Raises: UsageError D843: gymnasium could not make it.
     """
-    return make_quietly(environment.id, {**environment.options, **options})
+    return make_quietly(environment.asked, {**environment.options, **options})
 
 
 def make_quietly(env_id: str, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:

@@ -108,5 +108,5 @@ def environment(args: Mapping[str, Any], map: Sequence[str] | None) -> Environme
 
 
 # gymnasium 1.x reads no entry points: it learns of an environment when the module that defines it is
-# imported, as in gymnasium.make("stlspec.envs.gridworld:stlspec/GridWorld-v0") and gymnasium.register_envs.
+# imported, as in gymnasium.make("stlspec.gym:stlspec/GridWorld-v0") and gymnasium.register_envs.
 register()

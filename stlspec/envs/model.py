@@ -44,7 +44,7 @@ class Environment:
     terminal: states at which the environment itself ends. max_steps: its step limit; None = no limit.
     signal_names: the signals it computes. state_signals: those that together are the state.
     compute: (names, states) -> columns; states are numbers, or raw observations when n_states is 0.
-    options: the keyword arguments of `gymnasium.make(id, ...)`.
+    options: the keyword arguments of `gymnasium.make(id, ...)`. module: what is imported before, to register the id.
     """
 
     id: str
@@ -67,6 +67,12 @@ class Environment:
     state_signals: tuple[str, ...] = ()
     compute: SignalFunction = no_signals
     options: Mapping[str, Any] = field(default_factory=dict)
+    module: str | None = None
+
+    @property
+    def asked(self) -> str:
+        """The id as it was asked for: MODULE:ID where a module registers it. Never what a file keeps."""
+        return self.id if self.module is None else f"{self.module}:{self.id}"
 
     @cached_property
     def transitions(self) -> tuple[tuple[int, ...], ...] | None:

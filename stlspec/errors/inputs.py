@@ -11,8 +11,8 @@ CODES: tuple[Code, ...] = (
         help="{help}",
         explanation="An environment is a built-in one (stlspec/GridWorld-v0, FrozenLake-v1, MountainCar-v0), "
         "one that a package adds through the entry point group 'stlspec.environments', or any id that "
-        "gymnasium has registered. An id of the form 'module:id' is refused, since a data file must not "
-        "choose what is imported.",
+        "gymnasium has registered. Of the form MODULE:ID, on the command line and from Python, the module is imported "
+        "first; in a data file such an id is refused, since it must not choose what is imported.",
         bad="# stlspec score spec.stl demo.json --env FrozenLake-v1000",
         good="# stlspec score spec.stl demo.json --env FrozenLake-v1",
         kind="shown",
@@ -279,7 +279,8 @@ CODES: tuple[Code, ...] = (
         "error",
         message="environment '{id}' cannot be made: {reason}",
         help="check its arguments, and that the packages it needs are installed",
-        explanation="gymnasium knows the environment, but making it failed.",
+        explanation="gymnasium knows the environment, but making it failed; or the module that registers it, in "
+        "`--env MODULE:ID`, cannot be imported.",
         bad="# an environment of an extra that is not installed",
         good='# pip install "gymnasium[box2d]"',
         kind="shown",

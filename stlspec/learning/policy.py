@@ -16,6 +16,7 @@ from typing import Any
 
 from stlspec.documents import DamageError, State, read_document, read_state
 from stlspec.envs.bins import Bins, read_bins
+from stlspec.envs.gridworld import register
 from stlspec.errors import DataError, diagnostic
 from stlspec.learning.route import Route, Walk, read_route
 from stlspec.learning.shaping import RUNS
@@ -156,6 +157,8 @@ def load_policy(path: str | Path) -> Policy:
     Returns: the policy.
     Raises:  DataError D873: there is no policy, or the file is damaged.
     """
+    # whoever loads a policy acts in its environment, perhaps by gymnasium.make
+    register()
     place = Path(path)
     if place.is_dir():
         place = place / FILE

@@ -13,7 +13,7 @@ from typing import Any
 from stlspec.api import Bundle
 from stlspec.binding import bind, columns_of
 from stlspec.demos import Demonstration, load_demonstrations
-from stlspec.envs.catalogue import environment_of
+from stlspec.envs.catalogue import make_environment
 from stlspec.envs.model import Environment
 from stlspec.errors import Diagnostic, StlspecError, diagnostic
 from stlspec.sampling import OnNan
@@ -25,8 +25,8 @@ from stlspec.semantics.ending import End, evaluate_ending
 class Job:
     """What is done with every file.
 
-    bundle: the compiled spec, which pickles as its file. env: the environment of the demonstrations, as files describe
-    it; None = the one that each demonstration names. end, at, on_nan, resample: as for `scores.score`.
+    bundle: the compiled spec, which pickles as its file. env: the environment of the demonstrations, as it was asked
+    for; None = the one that each demonstration names. end, at, on_nan, resample: as for `scores.score`.
     """
 
     bundle: Bundle
@@ -57,7 +57,7 @@ def job_of(bundle: Bundle, environment: Environment | None, **options: Any) -> J
     """
     if environment is None:
         return Job(bundle, **options)
-    return Job(bundle, (environment.id, tuple(environment.args.items()), environment.map), **options)
+    return Job(bundle, (environment.asked, tuple(environment.args.items()), environment.map), **options)
 
 
 @lru_cache(maxsize=4)
@@ -65,7 +65,7 @@ def _environment(env: tuple[str, tuple[tuple[str, Any], ...], tuple[str, ...] | 
     env_id, args, rows = env
     named = dict(args)
     # A named map is kept by its name, and is looked up again.
-    return environment_of({"id": env_id, "args": named, "map": None if "map_name" in named else rows})
+    return make_environment(env_id, named, None if "map_name" in named else rows)
 
 
 def score_file(job: Job, path: str) -> FileScores:

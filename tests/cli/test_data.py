@@ -3,6 +3,8 @@
 import csv
 import io
 import json
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -168,3 +170,48 @@ def test_report_writes_one_page_and_spares_the_inputs(
     assert Path(files[0]).read_text() == GOOD
     assert run(["score", GRID, *files, "--report", str(tmp_path / "no" / "such.html")]) == 2
     assert "S092" in capsys.readouterr().err
+
+
+MODULE = "corridor_in_this_folder"
+OWN = """
+import gymnasium
+class Corridor(gymnasium.Env):
+    observation_space = gymnasium.spaces.Discrete(3)
+    action_space = gymnasium.spaces.Discrete(2)
+gymnasium.register("mine/Folder-v0", entry_point=f"{__name__}:Corridor")
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    import gymnasium
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [place for place in sys.path if place])
+    (tmp_path / f"{MODULE}.py").write_text(OWN)
+    (tmp_path / "own.stl").write_text('signal s from "obs"\nhard far: eventually (s >= 2)\n')
+    yield tmp_path
+    sys.modules.pop(MODULE, None)
+    gymnasium.registry.pop("mine/Folder-v0", None)
+
+
+@pytest.mark.parametrize("option", ["--env", "--demo-env"])
+def test_an_environment_of_ones_own_is_named_with_its_module(
+    folder: Path, option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "walk.json").write_text('{"states": [0, 1, 2], "env": {"id": "mine/Folder-v0"}}')
+    assert run(["score", "own.stl", "walk.json", option, f"{MODULE}:mine/Folder-v0"]) == 0
+    assert "good" in capsys.readouterr().out
+
+
+def test_a_demonstration_cannot_have_a_module_imported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # the spec needs a signal that only the environment could compute
+    (folder / "far.stl").write_text("signal d_goal\nhard far: eventually (d_goal < 1)\n")
+    (folder / "walk.json").write_text(f'{{"states": [0, 1, 2], "env": {{"id": "{MODULE}:mine/Folder-v0"}}}}')
+    for command in (["score", "far.stl", "walk.json"], ["reward", "far.stl", "walk.json", "-o", "R.json"]):
+        assert run(command) == 2
+        assert "error[D829]" in capsys.readouterr().err
+    learn = ["learn", "far.stl", "--demos", "walk.json", "--out", "out"]
+    assert run(learn) == 2
+    assert "error[D829]" in capsys.readouterr().err
+    assert MODULE not in sys.modules

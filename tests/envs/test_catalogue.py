@@ -1,7 +1,9 @@
+import pickle
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
 
+import gymnasium
 import pytest
 
 from stlspec.envs import catalogue
@@ -38,11 +40,54 @@ def test_an_unknown_environment_is_refused_with_a_suggestion():
     assert error.value.exit_code == 2
 
 
-def test_an_id_cannot_choose_a_module_to_import():
-    with pytest.raises(UsageError) as error:
-        make_environment("this:Zen-v0")
-    assert code(error) == "D820"
+@pytest.mark.parametrize("name", ["this:Zen-v0", "this:CartPole-v1", ":CartPole-v1"])
+def test_an_id_in_data_cannot_choose_a_module_to_import(name):
+    with pytest.raises(UsageError, match="does not choose what is imported") as error:
+        environment_of({"id": name}, file="hostile.json")
+    assert code(error) == "D829"
+    assert error.value.diagnostics[0].file == "hostile.json"
     assert "this" not in sys.modules
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """A module that registers a corridor of its own, not imported yet."""
+    monkeypatch.syspath_prepend(tmp_path)
+    name = "corridor_of_my_own"
+    (tmp_path / f"{name}.py").write_text(
+        "import gymnasium\n"
+        "class Corridor(gymnasium.Env):\n"
+        "    observation_space = gymnasium.spaces.Discrete(3)\n"
+        "    action_space = gymnasium.spaces.Discrete(2)\n"
+        "gymnasium.register('mine/Corridor-v0', entry_point=f'{__name__}:Corridor', max_episode_steps=9)\n"
+    )
+    yield name
+    sys.modules.pop(name, None)
+    gymnasium.registry.pop("mine/Corridor-v0", None)
+    catalogue._made.cache_clear()
+
+
+def test_the_module_that_the_user_names_is_imported_and_makes_the_environment_known(module):
+    made = make_environment(f"{module}:mine/Corridor-v0")
+    assert (made.id, made.asked, made.max_steps) == ("mine/Corridor-v0", f"{module}:mine/Corridor-v0", 9)
+    assert made.describe()["id"] == "mine/Corridor-v0"
+    del gymnasium.registry["mine/Corridor-v0"], sys.modules[module]
+    # another process knows the environment only if the module comes along
+    assert catalogue.make_live(pickle.loads(pickle.dumps(made))).observation_space.n == 3
+
+
+def test_a_module_that_does_not_register_it_or_cannot_be_imported_is_told(module, tmp_path):
+    with pytest.raises(UsageError, match="did you mean 'mine/Corridor-v0'") as error:
+        make_environment(f"{module}:mine/Coridor-v0")
+    assert code(error) == "D820"
+    with pytest.raises(UsageError, match="no_such_module.*looked for in the current folder") as error:
+        make_environment("no_such_module:mine/Corridor-v0")
+    assert code(error) == "D843"
+    (tmp_path / "broken_corridor.py").write_text("1 / 0")
+    with pytest.raises(UsageError, match=r"cannot be imported \(division by zero\)"):
+        make_environment("broken_corridor:mine/Corridor-v0")
+    with pytest.raises(UsageError, match="D820"):
+        make_environment("../broken:mine/Corridor-v0")
 
 
 class Added:
