@@ -4,7 +4,6 @@ In: a spec or a formula, and data files. Out: tables, JSON, CSV, a reward map. T
 the head of each command, so that the other commands start fast.
 """
 
-import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -95,9 +94,10 @@ def environment_from(
                 what = f"`{option}` needs an environment"
                 raise UsageError([diagnostic("D880", what=what, help="name one with `--env ID`")])
         return None
-    if ":" in env and os.getcwd() not in sys.path:
+    here = str(Path.cwd())
+    if ":" in env and here not in sys.path:
         # MODULE:ID: the command lies elsewhere, and the module beside the spec; last, so that it hides none
-        sys.path.append(os.getcwd())
+        sys.path.append(here)
     rows = read_map(map_file) if map_file is not None else None
     return make_environment(env, parse_env_args(args or []), rows, file=str(map_file) if map_file else None)
 

@@ -132,7 +132,7 @@ def _made(id: str, key: str, rows: tuple[str, ...] | None) -> Environment:  # no
     args = json.loads(key)
     module, colon, registered = id.partition(":")
     if colon and _MODULE.fullmatch(module):
-        _call(EntryPoint(id, _REGISTERING, GROUP), module, registered)
+        _loaded(EntryPoint(id, _REGISTERING, GROUP))(module, registered)
         return replace(_made(registered, key, rows), module=module)
     if id in _FACTORIES:
         return _call(EntryPoint(id, _FACTORIES[id], GROUP), args, rows)
@@ -144,13 +144,17 @@ def _made(id: str, key: str, rows: tuple[str, ...] | None) -> Environment:  # no
     return _call(EntryPoint(id, _FOREIGN, GROUP), id, args, rows, known)
 
 
-def _call(point: EntryPoint, *arguments: Any) -> Any:
+def _call(point: EntryPoint, *arguments: Any) -> Environment:
+    made: Environment = _loaded(point)(*arguments)
+    return made
+
+
+def _loaded(point: EntryPoint) -> Any:
     try:
-        factory = point.load()
+        return point.load()
     except (ImportError, AttributeError) as error:
         reason = str(error).splitlines()[0][:200]
         raise UsageError([diagnostic("D842", name=point.name, group=GROUP, reason=reason)]) from error
-    return factory(*arguments)
 
 
 def _misdescribed(description: Any) -> str:

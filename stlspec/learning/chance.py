@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from stlspec.learning.qstl import CHUNK
 from stlspec.learning.settings import Settings
-from stlspec.learning.shaping import GOAL, LIMIT, RUNS, VIOLATION
+from stlspec.learning.shaping import LIMIT, RUNS, VIOLATION, base_reward
 
 SLOWEST = 0.01
 """Learning rates do not fall below this."""
@@ -258,7 +258,7 @@ def pay(here: Step, settings: Settings) -> float:
     """
     if settings.base == "env":
         return here.reward - (1.0 if here.ending == VIOLATION else 0.0)
-    return {GOAL: 1.0, VIOLATION: -1.0}.get(here.ending, 0.0) - settings.step_cost
+    return base_reward(here.ending, settings.step_cost)
 
 
 def pays(ending: int, own: float, settings: Settings) -> float:

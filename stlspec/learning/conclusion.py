@@ -4,6 +4,7 @@ In: the segments and the chosen tour. Out: an `Outcome`: the policy, the log, th
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -17,7 +18,7 @@ from stlspec.learning.policy import Policy, greedy_action
 from stlspec.learning.route import Route, Stage
 from stlspec.learning.settings import Settings
 from stlspec.learning.shaping import GOAL, LIMIT
-from stlspec.learning.task import SETTLED, World
+from stlspec.learning.task import SETTLED, World, lifted, place
 from stlspec.learning.tours import CHAIN, Judge, Search, Tour, looks
 from stlspec.semantics.evaluation import Evaluation, RequirementResult
 
@@ -133,12 +134,22 @@ def _training(search: Search, lasting: tuple[int, int] | None) -> Training:
 
 
 def _farming(search: Search, tour: Tour) -> Farming | None:
-    """Look at the last segment of a tour: where one farms, the tour goes no further."""
+    """Look at the last segment of a tour: where one farms, the tour goes no further.
+
+    Returns: the cycle in states of the environment, as the report names them.
+    """
     keys = [leg.key for leg in tour.legs if leg.key is not None]
     if not keys:
         return None
     task, found = search.tasks[keys[-1]], search.segments[keys[-1]]
-    return find_farming(task, found.path, search.potential, search.settings.gamma)
+    farming = find_farming(task, found.path, lifted(task, search.potential), search.settings.gamma)
+    if farming is None:
+        return None
+    cycle, to_goal = (
+        None if states is None else tuple(place(task, state) for state in states)
+        for states in (farming.cycle, farming.to_goal)
+    )
+    return replace(farming, cycle=cycle or (), to_goal=to_goal)
 
 
 def make_policy(search: Search, tour: Tour, environment: Environment) -> Policy:

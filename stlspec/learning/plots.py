@@ -274,7 +274,8 @@ def draw_curve(
 
     figure = Figure(figsize=(7.5, 4.6), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    edges = sorted({0, len(steps), *np.geomspace(1, len(steps), 60).astype(int).tolist()})
+    last = len(steps)
+    edges = sorted({0, last, *(np.geomspace(1, last, 60).astype(int).tolist() if last else ())})
     groups = [slice(first, last) for first, last in pairwise(edges)]
     # most is learned in the first episodes, so the axis is logarithmic and the groups grow with it
     middle = [math.sqrt((group.start + 1) * group.stop) for group in groups]
@@ -318,4 +319,5 @@ def _finish_curve(top: Any, bottom: Any, first_success: int | None) -> None:
     if first_success is not None:
         top.plot([], [], color=_PATH, linestyle="--", label=f"success from episode {first_success} on")
     top.legend(frameon=False, fontsize=8, labelcolor=_INK, loc="best")
-    bottom.legend(framealpha=0.9, edgecolor="white", fontsize=8, labelcolor=_INK, loc="center right")
+    if bottom.get_legend_handles_labels()[0]:  # a run may need no episodes
+        bottom.legend(framealpha=0.9, edgecolor="white", fontsize=8, labelcolor=_INK, loc="center right")

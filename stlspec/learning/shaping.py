@@ -25,15 +25,16 @@ Move = tuple[int, float, int]
 
 
 def base_reward(ending: int, step_cost: float) -> float:
-    """Reward a step by how it ends: +1 at the goal, -1 at a violation, less the cost of a step.
+    """Reward a step by how it ends: +1 at the goal, -1 at any other end, less the cost of a step.
 
     Not in the paper: its rewards are all positive along a demonstration, so that going round in circles
-    beside the goal pays more than arriving.
+    beside the goal pays more than arriving. An environment that ends elsewhere leaves no way to the goal, as a
+    violation does: were it free, ending soon would save the cost of the steps to come.
 
     Args:    ending: any but `LIMIT`; `AVOIDED` counts as a violation. step_cost: what every step costs, >= 0.
     Returns: the reward, no unit.
     """
-    return {GOAL: 1, VIOLATION: -1, AVOIDED: -1}.get(ending, 0) - step_cost
+    return {GOAL: 1, VIOLATION: -1, AVOIDED: -1, TERMINAL: -1}.get(ending, 0) - step_cost
 
 
 def shaped_reward(base: float, potential: float, next_potential: float, gamma: float) -> float:

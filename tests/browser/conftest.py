@@ -39,13 +39,18 @@ def visit(browser: Any) -> Iterator[Callable[..., Any]]:
     """Open pages that must neither log an error nor ask another host for anything."""
     pages: list[tuple[Any, list[str], list[str]]] = []
 
-    def begin(url: str, scheme: str = "light", width: int = 1240) -> Any:
+    def begin(url: str, scheme: str = "light", width: int = 1240, *, outlived: bool = False) -> Any:
+        """Open a page. outlived: its server ends before it, and may then refuse what the page still asks for."""
         page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
         problems: list[str] = []
         asked: list[str] = []
-        page.on(
-            "console", lambda message: problems.append(message.text) if message.type in ("error", "warning") else None
-        )
+
+        def note(message: Any) -> None:
+            refused = outlived and "status of 503" in message.text
+            if message.type in ("error", "warning") and not refused:
+                problems.append(message.text)
+
+        page.on("console", note)
         page.on("pageerror", lambda error: problems.append(str(error)))
         page.on("request", lambda request: asked.append(request.url))
         page.goto(url)

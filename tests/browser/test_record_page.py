@@ -93,7 +93,7 @@ def test_a_sitting_with_the_mouse(record: Any, visit: Callable[..., Any], tmp_pa
 
 def test_ctrl_c_in_the_terminal_is_told_on_the_page(record: Any, visit: Callable[..., Any], tmp_path: Path) -> None:
     process, url = record(*GRID)
-    page = visit(url)
+    page = visit(url, outlived=True)
     steps(page, 0)
     page.keyboard.press("ArrowUp")
     steps(page, 1)

@@ -80,7 +80,7 @@ def test_a_module_that_does_not_register_it_or_cannot_be_imported_is_told(module
     with pytest.raises(UsageError, match="did you mean 'mine/Corridor-v0'") as error:
         make_environment(f"{module}:mine/Coridor-v0")
     assert code(error) == "D820"
-    with pytest.raises(UsageError, match="no_such_module.*looked for in the current folder") as error:
+    with pytest.raises(UsageError, match=r"no_such_module.*looked for in the current folder") as error:
         make_environment("no_such_module:mine/Corridor-v0")
     assert code(error) == "D843"
     (tmp_path / "broken_corridor.py").write_text("1 / 0")

@@ -3,6 +3,8 @@
 import pytest
 
 from stlspec import api
+from stlspec.demos import make_demonstration
+from stlspec.envs.catalogue import make_environment
 from stlspec.envs.model import Environment
 from stlspec.learning import learn
 from stlspec.learning.conclusion import first_lasting_success, short_of_steps
@@ -94,3 +96,24 @@ def test_the_stops_are_where_the_goals_are_reached(tour, kit):
         episodes=25,
     )
     assert lost.stops == ()
+
+
+def test_the_paper_s_reward_is_that_of_the_place_also_where_the_learner_counts_time():
+    """A goal with a lower bound makes states of place and clock, of which there are more than rewards."""
+    bundle = api.compile(
+        "signal d_obs\nsignal d_goal\nhard avoid: always (d_obs >= 1)\nsoft reach: eventually[3, 20] (d_goal < 1)\n"
+    )
+    world = make_environment("stlspec/GridWorld-v0", map_rows=["S.#", "...", "#.G"])
+    demonstration = make_demonstration("a", states=[[0, 0], [0, 1], [1, 1], [1, 2], [2, 2]])
+    outcome = learn(bundle, world, [demonstration], method="paper", episodes=300)
+    farming = outcome.farming
+    assert farming is None or all(0 <= state < world.n_states for state in (*farming.cycle, *(farming.to_goal or ())))
+    assert outcome.to_json()
+
+
+def test_an_end_away_from_the_goal_is_no_way_to_save_steps():
+    """Holes that no requirement forbids end the episode; falling into one soon must not pay more than looking on."""
+    bundle = api.compile("signal d_goal\nhard reach: eventually (d_goal < 1)\n")
+    world = make_environment("FrozenLake-v1", {"map_name": "8x8", "is_slippery": False})
+    demonstration = make_demonstration("gives up", states=[[0, 0], [0, 1], [0, 2]])
+    assert learn(bundle, world, [demonstration], seed=1).success

@@ -70,6 +70,11 @@ def test_any_title_is_drawn_as_it_is_and_inside_the_picture(scene, title):
         assert text.get_text().count("\n") == 2
 
 
+def test_a_run_without_episodes_has_an_empty_curve(tmp_path):
+    draw_curve([], [], 0, "a title", tmp_path / "c.png")
+    assert (tmp_path / "c.png").stat().st_size > 0
+
+
 def test_the_title_of_a_curve_is_no_formula(tmp_path):
     pytest.importorskip("matplotlib")
     draw_curve([3, 2], [GOAL, GOAL], 1, "$\\frac{$ \u8def", tmp_path / "c.png")

@@ -9,7 +9,7 @@ from stlspec.learning.shaping import GOAL, RUNS, TERMINAL, VIOLATION, base_rewar
 
 
 @pytest.mark.parametrize(
-    ("ending", "expected"), [(GOAL, "3/4"), (VIOLATION, "-5/4"), (RUNS, "-1/4"), (TERMINAL, "-1/4")]
+    ("ending", "expected"), [(GOAL, "3/4"), (VIOLATION, "-5/4"), (RUNS, "-1/4"), (TERMINAL, "-5/4")]
 )
 def test_base_reward_is_the_ending_less_the_cost_of_a_step(ending, expected):
     assert base_reward(ending, Fraction(1, 4)) == Fraction(expected)
