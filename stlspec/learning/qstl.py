@@ -7,13 +7,14 @@ allowed actions is the maximum over the row.
 """
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 from math import fsum, inf
 
 import numpy as np
 
 from stlspec.learning.promises import Promises
 from stlspec.learning.settings import Settings
-from stlspec.learning.shaping import AVOIDED, GOAL, LIMIT, RUNS, UNTRIED, VIOLATION, Move, moves
+from stlspec.learning.shaping import AVOIDED, LIMIT, RUNS, UNTRIED, VIOLATION, Move, base_reward, moves
 from stlspec.learning.task import Task
 
 CHUNK = 25
@@ -22,7 +23,6 @@ CHUNK = 25
 LARGEST_ROBUSTNESS = 1e100
 
 _BLOCK = 1024
-_GAIN = {GOAL: 1.0, VIOLATION: -1.0, AVOIDED: -1.0}
 
 
 class Learner:
@@ -69,6 +69,24 @@ class Learner:
                 for state, row in enumerate(table)
             ]
         return table
+
+    @cached_property
+    def _ways_in(self) -> list[list[tuple[int, int]]]:
+        """The pairs of state and action that lead to each state."""
+        found: list[list[tuple[int, int]]] = [[] for _ in self.task.transitions]
+        for state, row in enumerate(self.task.transitions):
+            for action, after in enumerate(row):
+                found[after].append((state, action))
+        return found
+
+    def _close(self, dead: int) -> None:
+        """Let the moves into a state pay and end as a violation; many states may die, so only these are touched."""
+        pays = base_reward(VIOLATION, self.settings.step_cost)
+        if self.task.payoffs:
+            pays += self.task.payoffs[dead]
+        for state, action in self._ways_in[dead]:
+            untried = self.moves[state][action][2] == UNTRIED
+            self.moves[state][action] = (dead, pays, UNTRIED if untried else VIOLATION)
 
     def discover(self, state: int, action: int) -> int:
         """Look at what an action does that is taken for the first time; return how the episode stands then.
@@ -121,7 +139,7 @@ class Learner:
             affected = [state]
             if not self.choices[state] and self.endings[state] == RUNS:
                 self.endings[state] = VIOLATION
-                self.moves[:] = self._moves()
+                self._close(state)
                 affected += self.promises.before[state] if self.promises is not None else ()
             self._correct(affected)
 
@@ -201,7 +219,7 @@ def run_episodes(learner: Learner, count: int, random: np.random.Generator) -> N
                     state, row = after, ahead
                     continue
                 ending = LIMIT
-            learner.record(state, action, ending, steps, _GAIN.get(ending, 0.0) - cost * steps)
+            learner.record(state, action, ending, steps, base_reward(ending, cost * steps))
             state, steps, left = start, 0, left - 1
             if not left or learner.endings[start] != RUNS:
                 break

@@ -83,6 +83,18 @@ def test_a_state_without_an_action_left_violates_itself():
     assert learner.moves[0][0][2] == VIOLATION
 
 
+@pytest.mark.parametrize("reward", [(0.0,) * 4, (0.5, 0.25, 0.0, 0.0)])
+def test_moves_into_a_dead_state_are_those_of_a_table_made_afresh(reward):
+    transitions = ((1, 0, 3), (2, 3, 2), (2, 2, 2), (3, 1, 0))
+    task = Task(
+        "goal", 4, 3, 0, transitions, (RUNS, RUNS, VIOLATION, RUNS), ((0.0,),) * 4, payoffs=(0.0, 2.0, 0.0, 0.0)
+    )
+    learner = trained(task, replace(GREEDY, episodes=3, epsilon=0.5, method="shaped"), reward=reward)
+    learner.forbid([(1, 0), (1, 1), (1, 2)])
+    assert learner.endings[1] == VIOLATION
+    assert learner.moves == learner._moves()
+
+
 def test_a_start_without_a_safe_action_ends_training_without_steps():
     task = corridor(RUNS, GOAL)
     learner = Learner(task, replace(GREEDY, episodes=3), [0.0, 0.0])
