@@ -18,6 +18,7 @@ from stlspec.compiler.bundle import BundleData, Signal
 from stlspec.demos import Demonstration
 from stlspec.envs.catalogue import environment_of
 from stlspec.envs.model import Environment, derive_actions
+from stlspec.envs.steps import wrong_step
 from stlspec.errors import DataError, Diagnostic, InputError, diagnostic
 from stlspec.lang.spelling import closest_column, split_unit
 from stlspec.lang.units import dimension, respelt
@@ -51,6 +52,22 @@ class BoundDemonstration:
     def name(self) -> str:
         """The name of the demonstration."""
         return self.demonstration.name
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """D859 for the first step that the environment cannot take, where it knows its transitions."""
+        home, states = self.environment, self.states
+        found = None if home is None or not home.n_states or states is None else wrong_step(home, states, self.actions)
+        if home is None or found is None:
+            return ()
+        help_ = "correct 'actions', or leave them out: they are then found from the states"
+        if not found.by_action:
+            elsewhere = 'if it was made in another environment, name that one: "env" in it, --demo-env, --demo-map'
+            help_ = f"record every step, since what lies between is not seen and labels can be wrong; {elsewhere}"
+        more = f" (the first of {found.count})" if found.count > 1 else ""
+        place: dict[str, Any] = {"sample": found.sample, "next": found.sample + 1, "env": home.id}
+        file = self.demonstration.file
+        return (diagnostic("D859", file=file, name=self.name, what=found.what, more=more, help=help_, **place),)
 
 
 def bind(

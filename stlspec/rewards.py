@@ -7,7 +7,7 @@ every rule is a function of its own here, so that the map can be worked out by h
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -48,13 +48,14 @@ class RewardMap:
 
     meaning_sha256: the spec that ranked the demonstrations. environment: description {"id", "args", "map"} of
     the environment that the states belong to. states, values: of equal length; a state not listed has 0.
-    values: in [-1, 1].
+    values: in [-1, 1]. doubts: warnings about the demonstrations that it was inferred from; no part of its file.
     """
 
     meaning_sha256: str
     environment: Mapping[str, Any]
     states: tuple[State, ...]
     values: tuple[float, ...]
+    doubts: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def all_zero(self) -> bool:
@@ -62,8 +63,8 @@ class RewardMap:
         return not any(self.values)
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Return D864 if the map is 0 everywhere."""
-        return (diagnostic("D864", reason=""),) if self.all_zero else ()
+        """Return the doubts, and D864 if the map is 0 everywhere."""
+        return (*self.doubts, *((diagnostic("D864", reason=""),) if self.all_zero else ()))
 
     def _repr_svg_(self) -> str | None:
         """Show the reward on the map in a notebook; None where its states are no cells of a map."""
@@ -200,7 +201,7 @@ def learner_reward(ranks: Sequence[int], values: Sequence[Mapping[int, float]]) 
 
 @dataclass(frozen=True, slots=True)
 class RankedStates:
-    """A demonstration as Algorithm 1 sees it: states by number, label and rank, what its states get."""
+    """A demonstration as Algorithm 1 sees it: states by number, label, rank, what its states get; its warnings."""
 
     name: str
     environment: Environment
@@ -208,6 +209,7 @@ class RankedStates:
     label: Label
     rank: int
     values: Mapping[int, float]
+    warnings: tuple[Diagnostic, ...] = ()
 
 
 def ranked_states(
@@ -271,7 +273,8 @@ def reward_of(bundle: BundleData, ranked: Sequence[RankedStates], environment: E
             raise _foreign(f"demonstration '{other.name}'", last, home)
     found = learner_reward([d.rank for d in ranked], [d.values for d in ranked])
     states = tuple(_named(home.decode(state)) for state in found)
-    return RewardMap(meaning, MappingProxyType(home.describe()), states, tuple(found.values()))
+    doubts = tuple(warning for d in ranked for warning in d.warnings)
+    return RewardMap(meaning, MappingProxyType(home.describe()), states, tuple(found.values()), doubts)
 
 
 def _shape(environment: Environment) -> tuple[Any, ...]:
@@ -311,7 +314,8 @@ def _ranked(
     penalised = penalty([weight for _, weight, _ in failed], [found.bounded for _, _, found in failed])
     states = tuple(map(bound.environment.encode, bound.states))
     values = demonstration_values(states, score.label, score.reward, violating, penalised)
-    return RankedStates(name, bound.environment, states, score.label, score.rank, MappingProxyType(values))
+    given = MappingProxyType(values)
+    return RankedStates(name, bound.environment, states, score.label, score.rank, given, score.warnings)
 
 
 def _numberless(bound: BoundDemonstration) -> Diagnostic:

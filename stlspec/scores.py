@@ -17,7 +17,7 @@ from stlspec.compiler.bundle_file import number
 from stlspec.compiler.printing import number_text
 from stlspec.demos import Demonstration
 from stlspec.envs.model import Environment
-from stlspec.errors import DataError, diagnostic
+from stlspec.errors import DataError, Diagnostic, diagnostic
 from stlspec.lang.units import STEP
 from stlspec.markup.elements import element, short
 from stlspec.markup.elements import number as shown
@@ -99,7 +99,7 @@ class DemonstrationScore:
     """How one demonstration meets all requirements.
 
     label, reward (r_d) and rank (1 = worst) are None where a verdict is undecided, or where the evaluation
-    was not asked for at sample 0.
+    was not asked for at sample 0. warnings: what is doubtful about the demonstration itself.
     """
 
     name: str
@@ -107,6 +107,7 @@ class DemonstrationScore:
     reward: float | None
     rank: int | None
     requirements: Mapping[str, RequirementScore]
+    warnings: tuple[Diagnostic, ...] = ()
 
     def _repr_html_(self) -> str:
         """Show the robustness of each requirement over time in a notebook, of the first twenty."""
@@ -297,7 +298,7 @@ def score_demonstration(
         r.name: _requirement_score(r, bound.name, result[r.name], failure(r.name, result[r.name]))
         for r in bundle.requirements
     }
-    return _whole(bundle, bound.name, row, at)
+    return replace(_whole(bundle, bound.name, row, at), warnings=bound.warnings)
 
 
 def score_outcomes(bundle: BundleData, name: str, outcomes: Mapping[str, Outcome]) -> DemonstrationScore:

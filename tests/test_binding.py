@@ -391,3 +391,23 @@ def test_only_what_may_be_read_is_asked_for():
     used = spec("x", Signal("v", source="speed"), unused=(Signal("z"),))
     assert columns_of(used) == {"x", "speed"}
     assert columns_of(used, make_environment("MountainCar-v0")) == {"x", "speed", "position", "velocity"}
+
+
+@pytest.mark.parametrize(
+    ("states", "actions", "parts"),
+    [
+        ([[0, 0], [0, 2], [0, 0]], None, ("sample 0 to 1 is no step of", "(the first of 2)", "record every step")),
+        ([[0, 0], [1, 0]], [2], ("action 2 does not lead from [0, 0] to [1, 0]", "correct 'actions'")),
+        ([[0, 0], [1, 0]], [1], ()),
+        ([[0, 0], [1, 0]], None, ()),
+    ],
+)
+def test_a_step_that_the_environment_cannot_take_is_doubted_not_refused(states, actions, parts):
+    bound = bind(spec("d_obs"), make_demonstration("d", states=states, actions=actions), GRID)
+    assert [(w.code, w.severity) for w in bound.warnings] == [("D859", "warning")] * bool(parts)
+    assert all(part in f"{bound.warnings[0].message} {bound.warnings[0].help}" for part in parts)
+
+
+def test_nothing_is_doubted_without_states_or_an_environment():
+    assert bind(spec("x"), make_demonstration("d", {"x": [1.0, 2.0]})).warnings == ()
+    assert bind(spec("x"), make_demonstration("d", {"x": [1.0, 2.0]}, states=[[0, 0], [0, 2]])).warnings == ()

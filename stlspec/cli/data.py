@@ -210,6 +210,7 @@ def _score_all(
     loaded = load_demonstrations(paths, columns_of(bundle, environment))
     draw = _plotter(plot, len(loaded)) if plot is not None else None
     ranking = scores.score(bundle, loaded, environment, **options)
+    warn(found for demonstration in ranking.demonstrations for found in demonstration.warnings)
     explanations = _explanations(bundle, ranking) if explain or draw else []
     if draw is not None:
         draw(bundle, ranking, explanations)

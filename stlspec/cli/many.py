@@ -128,7 +128,7 @@ def score_into(out: Path, job: "Job", paths: list[str], sharing: Sharing, as_jso
 
 @contextmanager
 def _progress(total: int, keep_going: bool) -> "Iterator[Callable[[FileScores, int], None]]":
-    """Show how far the work is, on a terminal; report the files that are left out at once, anywhere."""
+    """Show how far the work is, on a terminal; report at once, anywhere, what is doubtful or left out."""
     from stlspec import report
 
     with report.files_progress(sys.stderr, total) as bar:
@@ -139,6 +139,8 @@ def _progress(total: int, keep_going: bool) -> "Iterator[Callable[[FileScores, i
             shown += len(found.scores)
             seconds = max(time.monotonic() - began, 1e-9)
             bar(done, f"{shown / seconds:,.0f} demonstrations/s")
+            for score in found.scores:
+                warn(score.warnings)
             if keep_going:
                 warn(found.problems)
 

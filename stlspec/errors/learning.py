@@ -16,6 +16,20 @@ CODES: tuple[Code, ...] = (
         kind="shown",
     ),
     Code(
+        "D859",
+        "a recorded step that the environment cannot take",
+        "warning",
+        message="demonstration '{name}': sample {sample} to {next} is no step of '{env}': {what}{more}",
+        help="{help}",
+        explanation="Where an environment knows its transitions, the steps of a demonstration are compared with them; "
+        "where they are by chance, with all that can happen. A log that leaves out samples jumps over cells, so that "
+        "a violation between them is not seen and time bounds count too few samples: labels can be wrong. The "
+        "demonstration is used all the same.",
+        bad='{"states": [[0, 0], [0, 2]], "env": {"id": "stlspec/GridWorld-v0", "map": ["S.G"]}}',
+        good='{"states": [[0, 0], [0, 1], [0, 2]], "env": {"id": "stlspec/GridWorld-v0", "map": ["S.G"]}}',
+        kind="shown",
+    ),
+    Code(
         "D860",
         "an infinite robustness that is not bounded",
         "error",

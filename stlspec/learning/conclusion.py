@@ -85,7 +85,7 @@ def conclude(
         log=log,
         checks=checks,
         farming=farming,
-        warnings=() if settings.method == "plain" else evidence.warnings,
+        warnings=evidence.doubts + (() if settings.method == "plain" else evidence.warnings),
         notes=remarks if success else (*short_of_steps(log, settings), *remarks),
     )
 

@@ -42,6 +42,11 @@ class Evidence:
     ranked: tuple[RankedStates, ...] = ()
     given: bool = False
 
+    @property
+    def doubts(self) -> tuple[Diagnostic, ...]:
+        """What is doubtful about the demonstrations themselves, whatever training makes of them."""
+        return tuple(warning for demonstration in self.ranked for warning in demonstration.warnings)
+
 
 def gather(
     bundle: BundleData,

@@ -237,7 +237,7 @@ def conclude(environment: Environment, scene: Scene, sampler: chance.Sampler, se
         log=log,
         checks=(),
         lessons=lessons_of(scene.evidence, environment),
-        warnings=() if settings.method == "plain" else scene.evidence.warnings,
+        warnings=scene.evidence.doubts + (() if settings.method == "plain" else scene.evidence.warnings),
         notes=short_of_steps(log, settings)
         + (() if environment.deterministic else _remarks(satisfaction, environment)),
         satisfaction=None if environment.deterministic else satisfaction,

@@ -5,7 +5,7 @@ holds no trace, or what is wrong with the file. One demonstration is evaluated a
 one file.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -95,4 +95,4 @@ def _scored(job: Job, demonstration: Demonstration, environment: Environment | N
     result = evaluate_ending(job.bundle, bound.signals, bound.time, end=job.end, at=job.at or 0, file=file)
     score = score_demonstration(job.bundle, bound, result, job.at)
     kept: dict[str, RequirementScore] = {name: x.settled() for name, x in score.requirements.items()}
-    return DemonstrationScore(score.name, score.label, score.reward, None, kept)
+    return replace(score, requirements=kept)

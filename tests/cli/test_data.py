@@ -215,3 +215,24 @@ def test_a_demonstration_cannot_have_a_module_imported(folder: Path, capsys: pyt
     assert run(learn) == 2
     assert "error[D829]" in capsys.readouterr().err
     assert MODULE not in sys.modules
+
+
+@pytest.mark.parametrize(
+    "words", [["score"], ["score", "--format", "json"], ["score", "--jobs", "1"], ["score", "--out"], ["reward", "-o"]]
+)
+def test_a_log_that_leaves_out_steps_is_doubted_once_for_each_demonstration(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The third cell of the way is an obstacle that a log of every second sample jumps over: it scores as good."""
+    env = '"env": {"id": "stlspec/GridWorld-v0", "map": ["S.#.G"]}'
+    demos = tmp_path / "d.jsonl"
+    demos.write_text(
+        f'{{"name": "all", "states": [[0, 0], [0, 1], [0, 2], [0, 3], [0, 4]], {env}}}\n'
+        f'{{"name": "half", "states": [[0, 0], [0, 1], [0, 3], [0, 4]], {env}}}\n'
+    )
+    command, *options = words
+    target = {"--out": [str(tmp_path / "s.jsonl")], "-o": [str(tmp_path / "r.json")]}.get(words[-1], [])
+    assert run([command, GRID, str(demos), *options, *target]) == 0
+    told = capsys.readouterr().err
+    assert told.count("D859") == 1
+    assert "demonstration 'half': sample 1 to 2 is no step of 'stlspec/GridWorld-v0'" in told

@@ -206,3 +206,16 @@ def test_the_environment_is_the_one_that_the_demonstrations_name(
     other.write_text(json.dumps(first) + "\n" + json.dumps({**second, "env": None}) + "\n")
     assert run(["learn", SPEC, *SHORT, "--demos", str(other), "--out", str(tmp_path / "c")]) == 2
     assert "do not all name the same one" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("method", ["shaped", "plain"])
+def test_learn_doubts_a_demonstration_with_a_step_that_is_none(
+    method: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    demo = tmp_path / "jumps.json"
+    demo.write_text('{"states": [[4, 0], [2, 0], [0, 0], [0, 2], [0, 4]]}')
+    words = ["learn", SPEC, *WORLD, "--episodes", "600", "--method", method, "--demos", str(demo)]
+    assert run([*words, "--out", str(tmp_path / "run")]) == 0
+    told = capsys.readouterr().err
+    assert told.count("D859") == 1
+    assert "no action leads from [4, 0] to [2, 0] (the first of 4)" in told
